@@ -1,0 +1,113 @@
+# ssdo-filter. `make demo` and `make check` are all a newcomer needs; `make help` lists the rest.
+VERSION  := $(shell cat VERSION)
+PREFIX   ?= /usr/local
+DESTDIR  ?=
+BINDIR   := $(PREFIX)/bin
+LIBDIR   := $(PREFIX)/lib/ssdo-filter
+MANDIR   := $(PREFIX)/share/man/man1
+BUILD    ?= build
+CC       ?= gcc
+CXX      ?= g++
+
+# Debian packages: what the build needs, what `make check` needs on top.
+DEPS_BUILD := pkg-config libopenexr-dev libopenimageio-dev libopencolorio-dev libegl-dev libegl-mesa0 libgl1-mesa-dri libepoxy-dev \
+              libdeflate-dev libjson-c-dev
+DEPS_CHECK := libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender libembree-dev man-db python3-minimal
+DEPS_BENCH := gnuplot-nox
+
+PKGS       := OpenEXR epoxy egl libdeflate json-c
+# Looked up only when something is compiled, so that `make deps` works on a machine that has none of it.
+PKG_CFLAGS  = $(shell pkg-config --cflags $(PKGS) | sed 's/-I/-isystem /g')
+PKG_LIBS    = -lOpenEXRCore $(shell pkg-config --libs epoxy egl libdeflate json-c) -lpthread -ldl -lm
+
+SANITIZE ?=
+SANFLAGS := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-omit-frame-pointer)
+WARN     := -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes
+CFLAGS   ?= -O2 -g
+# No contraction of a*b+c and no fast-math: results must be the same bytes on every machine of the same architecture.
+ALL_CFLAGS = -std=c17 -D_GNU_SOURCE -DSSDO_VERSION='"$(VERSION)"' -DSSDO_LIBDIR='"$(LIBDIR)"' -Isrc -I$(BUILD) $(PKG_CFLAGS) $(WARN) \
+             $(CFLAGS) -ffp-contract=off $(SANFLAGS) $(EXTRA_CFLAGS)
+CXXFLAGS ?= -O2 -g
+ALL_CXXFLAGS = -std=c++17 -fPIC -fvisibility=hidden -Isrc $(CXXFLAGS) -Wall -Wextra $(SANFLAGS)
+
+SRC      := $(filter-out src/main.c,$(wildcard src/*/*.c))
+OBJ      := $(SRC:%.c=$(BUILD)/%.o) $(BUILD)/shaders.o
+SHADERS  := $(wildcard shaders/*.comp shaders/*.frag shaders/*.vert)
+GLSL     := $(SHADERS) $(wildcard shaders/include/*.glsl)
+BIN      := $(BUILD)/ssdo-filter
+PLUGIN   := $(BUILD)/ssdo-images.so
+UNIT     := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))
+TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
+
+.PHONY: all deps deps-check deps-bench demo check lint format clean install uninstall help
+all: $(BIN) $(PLUGIN)
+
+help:
+	@echo 'make demo     install what is missing, build, filter a sample, make a contact sheet'
+	@echo 'make check    install what is missing, build, run all tests'
+	@echo 'make all | lint | format | install PREFIX= DESTDIR= | uninstall | clean'
+
+$(BIN): $(BUILD)/src/main.o $(BUILD)/libssdo.a
+	$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
+
+$(BUILD)/libssdo.a: $(OBJ)
+	@rm -f $@
+	ar rcsD $@ $^
+
+$(BUILD)/%.o: %.c VERSION | deps-stamp
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
+
+# Shaders travel inside the binary; SSDO_SHADER_DIR reads them from a folder instead.
+$(BUILD)/shaders.c: $(GLSL) tools/embed.sh
+	@mkdir -p $(@D)
+	sh tools/embed.sh shaders $(GLSL) >$@.tmp && mv $@.tmp $@
+$(BUILD)/shaders.o: $(BUILD)/shaders.c src/gpu/shaders.h
+	$(CC) $(ALL_CFLAGS) -c -o $@ $<
+
+# OpenImageIO lives in a module of its own, opened on demand: linking it costs every run 290 ms.
+$(PLUGIN): $(wildcard src/plugin/*.cpp) $(wildcard src/plugin/*.h) | deps-stamp
+	@mkdir -p $(@D)
+	$(CXX) $(ALL_CXXFLAGS) -shared -o $@ $(filter %.cpp,$^) $$(pkg-config --cflags --libs OpenImageIO OpenColorIO) $(LDFLAGS)
+
+$(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(TESTLIB) $(BUILD)/libssdo.a
+	@mkdir -p $(@D)
+	$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(PKG_LIBS)
+
+# Order-only: checks once per make run that the packages of the build are there.
+.PHONY: deps-stamp
+deps-stamp: ; @sh tools/deps.sh --quiet $(DEPS_BUILD)
+deps:       ; @sh tools/deps.sh $(DEPS_BUILD)
+deps-check: ; @sh tools/deps.sh $(DEPS_BUILD) $(DEPS_CHECK)
+deps-bench: ; @sh tools/deps.sh $(DEPS_BUILD) $(DEPS_CHECK) $(DEPS_BENCH)
+
+demo: deps
+	@$(MAKE) --no-print-directory all
+	@sh samples/demo.sh $(BIN) $(BUILD)
+
+check: deps-check
+	@$(MAKE) --no-print-directory all lint unit
+	@sh tests/run.sh $(BUILD) $(UNIT)
+
+.PHONY: unit
+unit: $(UNIT)
+
+lint: deps-check
+	@sh tools/lint.sh $(BUILD)
+	@$(MAKE) --no-print-directory BUILD=$(BUILD)/lint EXTRA_CFLAGS=-Werror all
+
+format: ; clang-format -i $$(git ls-files 'src/*.[ch]' 'src/*.cpp' 'tests/*.[ch]')
+
+install: all
+	install -d $(DESTDIR)$(BINDIR) $(DESTDIR)$(LIBDIR) $(DESTDIR)$(MANDIR)
+	install -m 755 $(BIN) $(DESTDIR)$(BINDIR)/ssdo-filter
+	install -m 644 $(PLUGIN) $(DESTDIR)$(LIBDIR)/ssdo-images.so
+	install -m 644 man/ssdo-filter.1 $(DESTDIR)$(MANDIR)/ssdo-filter.1
+
+uninstall:
+	rm -f $(DESTDIR)$(BINDIR)/ssdo-filter $(DESTDIR)$(LIBDIR)/ssdo-images.so $(DESTDIR)$(MANDIR)/ssdo-filter.1
+	-rmdir $(DESTDIR)$(LIBDIR)
+
+clean: ; rm -rf $(BUILD) demo
+
+-include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

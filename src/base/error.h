@@ -1,0 +1,38 @@
+// One error type for the whole program.
+//
+// A function that can fail takes an `error *` as its last argument and returns false (or NULL) after filling it. Nobody below
+// main() prints or exits. The message is one sentence that says what is wrong and what the user can do about it; file and
+// channel are kept apart so that the report can name them. The first error wins: err_set on an error that is already set keeps
+// the older one, because the cause comes before its consequences.
+#ifndef SSDO_BASE_ERROR_H
+#define SSDO_BASE_ERROR_H
+
+#include <stdbool.h>
+
+// The values are the process's exit codes (DESIGN.md, man page).
+typedef enum error_code {
+    ERR_NONE = 0,
+    ERR_FRAMES = 1, // some frames of a sequence failed
+    ERR_USAGE = 2,
+    ERR_INPUT = 3,
+    ERR_OUTPUT = 4,
+    ERR_GL = 5,
+    ERR_MEMORY = 6,
+} error_code;
+
+typedef struct error {
+    error_code code;
+    char message[768]; // without file name; a complete sentence without the final full stop
+    char file[512];    // "" when no file is concerned
+    char channel[256]; // "" when no channel is concerned
+} error;
+
+// Fills *e (unless it holds an error already, or is NULL) and returns false, so that `return err_set(...)` reads well.
+// file and channel may be NULL.
+bool err_set(error *e, error_code code, const char *file, const char *channel, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+
+// "file: message (channel 'c')" into buf, always terminated.
+void err_format(const error *e, char *buf, unsigned long size);
+
+#endif

@@ -1,0 +1,29 @@
+// Messages for the user: warnings, and with -v what was concluded.
+//
+// A log is passed down explicitly; nothing is global. Thread-safe. Warnings are kept (for the report) and each distinct
+// `key` is printed once per log, however many frames raise it.
+#ifndef SSDO_BASE_LOG_H
+#define SSDO_BASE_LOG_H
+
+#include <pthread.h>
+#include <stdbool.h>
+
+typedef enum log_level { LOG_QUIET = 0, LOG_WARN = 1, LOG_INFO = 2 } log_level;
+
+typedef struct log {
+    log_level level;
+    pthread_mutex_t lock;
+    char **warnings; // texts of the warnings so far, owned
+    char **keys;     // their keys, owned
+    int warning_count;
+} log_t;
+
+void log_init(log_t *log, log_level level);
+void log_free(log_t *log);
+
+// "ssdo-filter: warning: ..." on stderr unless quiet; once per key.
+void log_warn(log_t *log, const char *key, const char *format, ...) __attribute__((format(printf, 3, 4)));
+// "ssdo-filter: ..." on stderr with -v only.
+void log_info(log_t *log, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+#endif

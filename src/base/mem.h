@@ -1,0 +1,19 @@
+// Checked allocation. Every allocation of ours goes through here, so that exhaustion can be injected in tests:
+// the environment variable SSDO_FAIL_ALLOC=n makes the n-th allocation of the process fail.
+#ifndef SSDO_BASE_MEM_H
+#define SSDO_BASE_MEM_H
+
+#include <stddef.h>
+
+#include "base/error.h"
+
+// count * size zeroed bytes, or NULL with ERR_MEMORY (also when the product overflows). count 0 gives a valid pointer.
+void *mem_zero(size_t count, size_t size, error *e);
+// The same, uninitialised and aligned to 64 bytes, for pixel data. Freed with free().
+void *mem_pixels(size_t count, size_t size, error *e);
+// realloc that never loses the old block on failure: returns NULL and leaves `old` valid.
+void *mem_grow(void *old, size_t count, size_t size, error *e);
+// A copy of a string (NULL gives NULL without an error).
+char *mem_string(const char *s, error *e);
+
+#endif

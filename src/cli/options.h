@@ -1,0 +1,73 @@
+// The command line: one table of options that makes the parser, --help, the man page's option list and the header record.
+#ifndef SSDO_CLI_OPTIONS_H
+#define SSDO_CLI_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "base/error.h"
+
+enum { OPT_MAX_INPUTS = 32 };
+
+typedef enum radius_unit { RADIUS_AUTO, RADIUS_WORLD, RADIUS_PIXELS } radius_unit;
+typedef enum compose_mode { MODE_RADIANCE, MODE_VISIBILITY } compose_mode;
+
+// What the user asked for. Strings point into argv or to constants; NULL means "not given". Defaults: options_defaults().
+typedef struct options {
+    const char *inputs[OPT_MAX_INPUTS];
+    int input_count;
+    const char *output;
+
+    const char *layers; // NULL = the default four
+    const char *method;
+    radius_unit radius_unit;
+    double radius;
+    int samples;      // 0 = the method's default
+    double thickness; // share of the radius; < 0 auto, INFINITY for inf
+    int blur;         // radius in pixels; 0 none; -1 the method's default
+    double scale, contrast;
+
+    const char *bounce; // none, ssdo; NULL = the method's own where it has one
+    double bounce_strength;
+
+    const char *env;
+    int env_up;        // 0 by renderer, 'y', 'z'
+    double env_rotate; // degrees
+    double env_scale;
+    const char *env_frame; // world, camera
+    double env_lod;        // < 0 auto
+    compose_mode mode;
+    double amount;
+
+    const char *role_names[16]; // --position ... --emission, indexed by gbuffer/resolve.h's role
+    const char *depth_kind, *albedo_kind, *view_layer;
+    double fov, ortho; // 0 = not given
+    const char *camera_file;
+
+    bool keep_none;
+    const char *prefix;      // "" by default; put before our layer names
+    const char *compression; // NULL = as the input
+    bool output_float;
+
+    const char *preview, *report;
+    int device; // -1 = first usable
+    bool list_devices;
+    int threads; // 0 = default
+    bool verbose, quiet, help, version;
+} options;
+
+void options_defaults(options *o);
+
+// Fills *o from argv. ERR_USAGE names the offending option and how to get help. Numbers are read in the C locale.
+bool options_parse(int argc, char **argv, options *o, error *e);
+
+void options_print_help(FILE *to);
+// The OPTIONS section of the man page in mdoc(7)/man(7) source; man/ssdo-filter.1 holds its output between markers, a test
+// compares.
+void options_print_man(FILE *to);
+
+// The settings that change pixels, as they would be typed ("--method ssdo --samples 64"), options at their default left out: the
+// header attribute ssdo/args. No paths but the base name of --env, no frames, threads, device, host or time.
+bool options_record(const options *o, char *buf, unsigned long size);
+
+#endif

@@ -1,0 +1,107 @@
+// --help and the man page's OPTIONS section.
+#include <string.h>
+
+#include "cli/options.h"
+#include "cli/options_table.h"
+
+enum { HELP_COLUMN = 30, HELP_WIDTH = 100 };
+
+// Words of `text` from column `at` on, wrapped to HELP_COLUMN .. HELP_WIDTH.
+static void print_wrapped(FILE *to, int at, const char *text)
+{
+    while (*text) {
+        int n = (int)strcspn(text, " ");
+        if (at > HELP_COLUMN && at + 1 + n > HELP_WIDTH) {
+            fprintf(to, "\n%*s", HELP_COLUMN, "");
+            at = HELP_COLUMN;
+        } else if (at > HELP_COLUMN) {
+            at += fprintf(to, " ");
+        }
+        at += fprintf(to, "%.*s", n, text);
+        text += n + strspn(text + n, " ");
+    }
+    fprintf(to, "\n");
+}
+
+static void print_help_row(FILE *to, const option_row *row)
+{
+    char left[96], text[512];
+    char letter[8] = "    ";
+    if (row->letter) snprintf(letter, sizeof letter, "-%c, ", row->letter);
+    int n = snprintf(left, sizeof left, "  %s--%s%s%s", letter, row->name, row->argument ? " " : "",
+                     row->argument ? row->argument : "");
+    fprintf(to, "%s", left);
+    if (n >= HELP_COLUMN) {
+        fprintf(to, "\n");
+        n = 0;
+    }
+    fprintf(to, "%*s", HELP_COLUMN - n, "");
+    if (row->fallback)
+        snprintf(text, sizeof text, "%s (default: %s)", row->help, row->fallback);
+    else
+        snprintf(text, sizeof text, "%s", row->help);
+    print_wrapped(to, HELP_COLUMN, text);
+}
+
+void options_print_help(FILE *to)
+{
+    fprintf(to, "usage: ssdo-filter [options] INPUT... -o OUTPUT\n"
+                "Ambient occlusion, directional light and one diffuse bounce from a G-buffer EXR.\n");
+    for (int g = 0; g < GROUP_COUNT; g++) {
+        fprintf(to, "\n%s\n", option_group_title((option_group)g));
+        for (int i = 0; i < option_row_count; i++)
+            if ((int)option_rows[i].group == g) print_help_row(to, &option_rows[i]);
+    }
+    fprintf(to, "\nExit status: 0 done, 1 some frames failed, 2 usage, 3 input, 4 output, 5 GL or EGL, 6 memory.\n"
+                "The manual: man ssdo-filter\n");
+}
+
+// Text for mdoc: one sentence a line, minus signs that can be copied, nothing taken for a macro or an escape.
+static void print_mdoc(FILE *to, const char *text)
+{
+    bool start = true;
+    for (const char *p = text; *p; p++) {
+        if (start && (*p == '.' || *p == '\'')) fprintf(to, "\\&");
+        start = false;
+        if (*p == '\\')
+            fprintf(to, "\\e");
+        else if (*p == '-' && (p == text || p[-1] == ' ' || p[-1] == '-'))
+            fprintf(to, "\\-");
+        else if (*p == ' ' && p > text && p[-1] == '.') {
+            fprintf(to, "\n");
+            start = true;
+        } else
+            fputc(*p, to);
+    }
+    fprintf(to, "\n");
+}
+
+static void print_mdoc_name(FILE *to, const char *name)
+{
+    fprintf(to, "Fl \\-");
+    for (const char *p = name; *p; p++) fprintf(to, *p == '-' ? "\\-" : "%c", *p);
+}
+
+static void print_man_row(FILE *to, const option_row *row)
+{
+    fprintf(to, ".It ");
+    if (row->letter) fprintf(to, "Fl %c , ", row->letter);
+    print_mdoc_name(to, row->name);
+    if (row->argument) fprintf(to, " Ar %s", row->argument);
+    fprintf(to, "\n");
+    print_mdoc(to, row->help);
+    if (row->fallback) {
+        fprintf(to, "Default: ");
+        print_mdoc(to, row->fallback);
+    }
+}
+
+void options_print_man(FILE *to)
+{
+    for (int g = 0; g < GROUP_COUNT; g++) {
+        fprintf(to, ".Ss %s\n.Bl -tag -width Ds\n", option_group_title((option_group)g));
+        for (int i = 0; i < option_row_count; i++)
+            if ((int)option_rows[i].group == g) print_man_row(to, &option_rows[i]);
+        fprintf(to, ".El\n");
+    }
+}

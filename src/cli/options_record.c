@@ -1,0 +1,128 @@
+// The header attribute ssdo/args: settings that change pixels and differ from their default, as one would type them.
+#include <ctype.h>
+#include <locale.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/options.h"
+#include "cli/options_table.h"
+
+typedef struct record {
+    char *buf;
+    size_t size, used;
+    bool full;
+} record;
+
+static void put(record *r, const char *text, size_t n)
+{
+    if (r->used + n + 1 > r->size) {
+        r->full = true;
+        return;
+    }
+    memcpy(r->buf + r->used, text, n);
+    r->used += n;
+    r->buf[r->used] = '\0';
+}
+
+static void put_string(record *r, const char *text) { put(r, text, strlen(text)); }
+
+// In single quotes where a POSIX shell would need them.
+static void put_value(record *r, const char *text)
+{
+    bool plain = *text != '\0';
+    for (const char *p = text; *p; p++) plain = plain && (isalnum((unsigned char)*p) || strchr("_-+.,:/=@%", *p));
+    if (plain) {
+        put_string(r, text);
+        return;
+    }
+    put_string(r, "'");
+    for (const char *p = text; *p; p++) {
+        if (*p == '\'')
+            put_string(r, "'\\''");
+        else
+            put(r, p, 1);
+    }
+    put_string(r, "'");
+}
+
+// The shortest decimal that reads back as the same double. The caller has put the thread into the C locale.
+static void number_text(double v, char *buf, size_t size)
+{
+    for (int digits = 1; digits <= 17; digits++) {
+        snprintf(buf, size, "%.*g", digits, v);
+        if (strtod(buf, NULL) == v) return;
+    }
+}
+
+static const char *word_for(const option_row *row, double value)
+{
+    for (const option_word *w = row->words; w && w->text; w++)
+        if (w->value == value) return w->text;
+    return NULL;
+}
+
+// The value of a row as text, or NULL when it has none. buf is scratch.
+static const char *value_text(const option_row *row, const options *o, char *buf, size_t size)
+{
+    const char *field = (const char *)o + row->offset;
+    double v = 0;
+    if (row->kind == OPT_FLAG) return *(const bool *)field ? "" : NULL;
+    if (row->kind == OPT_RADIUS) {
+        if (o->radius_unit == RADIUS_AUTO) return "auto";
+        number_text(o->radius, buf, size);
+        if (o->radius_unit == RADIUS_PIXELS) strcat(buf, "px");
+        return buf;
+    }
+    if (row->kind == OPT_CHOICE || row->kind == OPT_TEXT || row->kind == OPT_PATH) {
+        const char *text;
+        memcpy(&text, field, sizeof text);
+        const char *slash = text && row->kind == OPT_PATH ? strrchr(text, '/') : NULL;
+        return slash ? slash + 1 : text;
+    }
+    if (row->kind == OPT_REAL) {
+        memcpy(&v, field, sizeof v);
+    } else if (row->kind == OPT_SWITCH) {
+        v = *(const bool *)field ? 1 : 0;
+    } else {
+        int i;
+        memcpy(&i, field, sizeof i);
+        v = i;
+    }
+    const char *word = word_for(row, v);
+    if (word) return word;
+    number_text(v, buf, size);
+    return buf;
+}
+
+static bool same(const char *a, const char *b) { return a == b || (a && b && strcmp(a, b) == 0); }
+
+static void put_row(record *r, const option_row *row, const options *o, const options *defaults)
+{
+    char buf[64], default_buf[64];
+    const char *value = value_text(row, o, buf, sizeof buf);
+    if (!value || same(value, value_text(row, defaults, default_buf, sizeof default_buf))) return;
+    if (r->used) put_string(r, " ");
+    put_string(r, "--");
+    put_string(r, row->name);
+    if (row->kind == OPT_FLAG) return;
+    put_string(r, " ");
+    put_value(r, value);
+}
+
+bool options_record(const options *o, char *buf, unsigned long size)
+{
+    record r = {.buf = buf, .size = size};
+    if (size == 0) return false;
+    buf[0] = '\0';
+    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (!c) return false;
+    locale_t before = uselocale(c);
+    options defaults;
+    options_defaults(&defaults);
+    for (int i = 0; i < option_row_count; i++)
+        if (option_rows[i].pixels) put_row(&r, &option_rows[i], o, &defaults);
+    uselocale(before);
+    freelocale(c);
+    return !r.full;
+}

@@ -1,0 +1,64 @@
+// The rows behind cli/options.h: one row an option, in the order of --help and the man page.
+//
+// To add an option: add its field to `options`, its default to options_defaults() if that is not zero, and a row to
+// options_table.c. Parser, --help, man page and header record follow from the row; the man page's OPTIONS section is rewritten by
+// `SSDO_UPDATE_MAN=1 build/tests/test_cli_man`.
+#ifndef SSDO_CLI_OPTIONS_TABLE_H
+#define SSDO_CLI_OPTIONS_TABLE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef enum option_kind {
+    OPT_FLAG,   // bool, no argument: becomes true
+    OPT_SWITCH, // bool, one of the words
+    OPT_ENUM,   // int or enum, one of the words
+    OPT_CHOICE, // const char *, one of the words
+    OPT_TEXT,   // const char *, any text
+    OPT_PATH,   // const char *, a file name; the header record keeps only its base name
+    OPT_INT,    // int in [min, max], or one of the words
+    OPT_REAL,   // double in [min, max], or one of the words
+    OPT_RADIUS, // radius and radius_unit: a length, "40px" or "auto"
+} option_kind;
+
+typedef enum option_group {
+    GROUP_OUTPUT,
+    GROUP_ESTIMATOR,
+    GROUP_BOUNCE,
+    GROUP_ENVIRONMENT,
+    GROUP_COMPOSITE,
+    GROUP_CHANNELS,
+    GROUP_CAMERA,
+    GROUP_RUN,
+    GROUP_COUNT
+} option_group;
+
+// A word that stands for a value. For OPT_CHOICE the word itself is the value.
+typedef struct option_word {
+    const char *text;
+    double value;
+} option_word;
+
+typedef struct option_row {
+    const char *name;         // without dashes
+    char letter;              // short form, 0 for none
+    const char *argument;     // as shown in the help; NULL for a flag
+    option_kind kind;         //
+    size_t offset;            // of the field in `options`
+    const option_word *words; // ends with a NULL text; NULL for none
+    double min, max;          // bounds of a number
+    bool open;                // the bounds themselves are not allowed
+    bool may_be_empty;        // an OPT_TEXT may be ""
+    option_group group;
+    bool pixels;          // changes pixels or which layers exist: belongs into the header record
+    const char *fallback; // the default as the help shows it; NULL when "not given" needs no words
+    const char *help;     // whole sentences
+} option_row;
+
+extern const option_row option_rows[];
+extern const int option_row_count;
+
+// The heading of a group.
+const char *option_group_title(option_group g);
+
+#endif

@@ -1,0 +1,74 @@
+// An OpenEXR file in memory: headers of all parts, and the pixels of the channels that were asked for.
+//
+// Reading goes through OpenEXRCore; parts compressed with DWAA/DWAB, which OpenEXRCore 3.1.5 cannot decode, go through the
+// OpenImageIO module (plugin/images.h), opened on demand. Single and multi-part, scanline and tiled (level 0 only), any line
+// order, half/float/uint. Deep parts and subsampled channels are refused with ERR_INPUT. Samples keep their stored type and
+// bits: nothing is converted, so that what is passed through is unchanged. All sizes in the header are checked before memory is
+// taken for them.
+//
+// Pixel space: row-major over the part's own data window, top row first whatever the file's line order.
+#ifndef SSDO_EXR_FILE_H
+#define SSDO_EXR_FILE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/error.h"
+
+typedef enum sample_type { SAMPLE_UINT = 0, SAMPLE_HALF = 1, SAMPLE_FLOAT = 2 } sample_type; // OpenEXR's own numbers
+
+typedef struct box2 {
+    int x0, y0, x1, y1;
+} box2; // inclusive, as in the file
+
+static inline size_t sample_size(sample_type t) { return t == SAMPLE_HALF ? 2u : 4u; }
+static inline int box2_width(box2 b) { return b.x1 - b.x0 + 1; }
+static inline int box2_height(box2 b) { return b.y1 - b.y0 + 1; }
+static inline bool box2_equal(box2 a, box2 b) { return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1; }
+
+typedef struct exr_channel {
+    char *name;
+    sample_type type;
+    bool wanted; // set before exr_file_load: read this channel's pixels
+    void *data;  // width * height samples of `type`, native byte order; NULL until loaded
+} exr_channel;
+
+typedef struct exr_part {
+    char *name; // "" when the file gives none
+    char *view; // "" when the file gives none
+    box2 data_window, display_window;
+    float pixel_aspect;
+    int compression; // exr_compression_t's value
+    bool lossy;      // B44, B44A, PXR24, DWAA, DWAB: re-encoding would lose more, so it is stored as ZIP
+    bool tiled;
+    exr_channel *channels; // in the file's order
+    int channel_count;
+} exr_part;
+
+typedef struct exr_file {
+    char *path;
+    exr_part *parts;
+    int part_count;
+    void *core; // OpenEXRCore's context, open until exr_file_close; attributes are read and copied from it
+} exr_file;
+
+// Opens and checks the headers of all parts; reads no pixels. On failure *out is NULL and e names the file.
+bool exr_file_open(const char *path, exr_file **out, error *e);
+
+// Reads the pixels of every channel with `wanted` set and no data yet, on `threads` threads. A truncated or damaged chunk is
+// ERR_INPUT. A file that lost its end fails whole: no half-read data is left behind as if it were good.
+bool exr_file_load(exr_file *file, int threads, error *e);
+
+// Frees everything, pixels included. NULL is allowed.
+void exr_file_close(exr_file *file);
+
+// Attributes of a part. Each returns false when the attribute is missing or of another type; nothing is printed.
+bool exr_attr_string(const exr_file *file, int part, const char *name, const char **value); // valid until close
+bool exr_attr_float(const exr_file *file, int part, const char *name, double *value);       // int, float or double
+bool exr_attr_m44(const exr_file *file, int part, const char *name, double m[4][4]); // m44f or m44d, as stored: row vectors
+bool exr_attr_v2(const exr_file *file, int part, const char *name, double v[2]);     // v2f
+bool exr_attr_chromaticities(const exr_file *file, int part, double xy[8]);          // red, green, blue, white: x y each
+bool exr_attr_exists(const exr_file *file, int part, const char *name);
+
+#endif

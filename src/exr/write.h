@@ -1,0 +1,52 @@
+// Writing an OpenEXR file, whole or not at all.
+//
+// The file is written under a temporary name in the target's folder (host, process and random number in it), flushed to disk and
+// renamed onto the target; on any failure the temporary file is removed and an older target stays as it was. Chunks are encoded
+// on several threads and stored in order, so the bytes do not depend on the number of threads. No time stamp is written.
+#ifndef SSDO_EXR_WRITE_H
+#define SSDO_EXR_WRITE_H
+
+#include "base/error.h"
+#include "exr/file.h"
+
+typedef struct exr_out_channel {
+    const char *name;
+    sample_type type;
+    const void *data; // width * height samples of `type`, the part's data window, borrowed
+} exr_out_channel;
+
+typedef enum exr_attr_kind { EXR_ATTR_STRING, EXR_ATTR_FLOAT, EXR_ATTR_M44 } exr_attr_kind;
+
+typedef struct exr_out_attr {
+    const char *name;
+    exr_attr_kind kind;
+    const char *string;
+    double number;
+    double m44[4][4];
+} exr_out_attr;
+
+typedef struct exr_out_part {
+    const char *name, *view; // NULL or "" for none; a multi-part file needs distinct names
+    box2 data_window, display_window;
+    float pixel_aspect;
+    int compression;           // exr_compression_t's value
+    int level;                 // zip level, 0 = the writer's default
+    exr_out_channel *channels; // any order; stored sorted by name, as the format demands
+    int channel_count;
+    const exr_file *attributes_from; // every attribute of this part that is not structural is copied, NULL for none
+    int attributes_part;
+    const exr_out_attr *attributes; // ours; they replace copied ones of the same name
+    int attribute_count;
+} exr_out_part;
+
+// Writes scanline parts. Two channels of one name in a part, or two parts of one name, are ERR_OUTPUT.
+bool exr_write(const char *path, const exr_out_part *parts, int part_count, int threads, error *e);
+
+// n floats (reading every `stride`-th) into halves. NaN becomes 0, values beyond +-65504 are clamped; returns how many were
+// changed.
+size_t exr_to_half(const float *from, size_t stride, size_t n, uint16_t *to);
+
+// True if both paths name the same existing file (device and inode).
+bool exr_same_file(const char *a, const char *b);
+
+#endif

@@ -1,0 +1,69 @@
+// One frame's surfaces in camera space, ready for upload: what the passes read.
+//
+// All arrays are width * height over the frame's data window, row-major, top row first, owned by the gbuffer (gbuffer_free).
+// Nothing in them is NaN or infinite, whatever the file holds: colours are finite (NaN and -inf become 0, +inf and huge values
+// 1e30 at most), depth and normal obey the contracts below.
+#ifndef SSDO_GBUFFER_GBUFFER_H
+#define SSDO_GBUFFER_GBUFFER_H
+
+#include "base/error.h"
+#include "base/log.h"
+#include "gbuffer/camera.h"
+#include "gbuffer/resolve.h"
+
+enum gbuffer_need {
+    NEED_ALBEDO = 1 << 0,
+    NEED_BEAUTY = 1 << 1,
+    NEED_MATERIAL = 1 << 2, // roughness, metallic
+    NEED_EMISSION = 1 << 3,
+    NEED_DIFFUSE_LIGHT = 1 << 4, // the renderer's own diffuse direct (and whether indirect exists)
+    NEED_COVERAGE = 1 << 5,
+};
+
+typedef struct gbuffer_options {
+    unsigned need;           // gbuffer_need bits; depth and normal are always made
+    const char *camera_file; // --camera
+    double fov, ortho;       // --fov, --ortho; 0 = not given
+    int threads;
+} gbuffer_options;
+
+typedef struct gbuffer {
+    int width, height;
+    box2 data_window, display_window;
+    double pixel_aspect;
+    camera camera;
+    float *depth;          // planar depth z in camera space, > 0; exactly 0 where there is no surface
+    float *normal;         // 4 a pixel: unit camera-space normal facing the eye's side, w = 0; all 0 where there is no surface
+    float *albedo;         // 4 a pixel: r g b as stored (Blender: coverage-premultiplied), w = 0; NULL if absent or not needed
+    float *beauty;         // 4 a pixel: r g b, A (1 if absent); NULL
+    float *material;       // 2 a pixel: roughness, metallic; NULL
+    float *emission;       // 4 a pixel; NULL
+    float *diffuse_direct; // 4 a pixel; NULL
+    float *coverage;       // k of DESIGN.md's "Edges", 0..1: 1 inside surfaces; NULL unless needed
+    bool has_diffuse_indirect, has_alpha;
+    bool normals_from_depth, depth_from_position;
+    depth_kind depth_kind; // as measured
+    bool position_is_camera_space;
+    size_t valid;          // pixels with a surface
+    size_t off_ray;        // pixels whose P lay off their own ray and were moved onto it (DESIGN.md 4)
+    double extent;         // robust size of the visible surfaces, scene units: see gbuffer_extent in radius.h
+    char evidence[8][160]; // what was measured, one line each, for -v and the report
+    int evidence_count;
+} gbuffer;
+
+// Builds the frame from loaded channels. Validity from position and depth (finite, depth > 0, below the background value, not
+// P = 0 with a background depth), never from |N|. Works in double and subtracts the camera before anything becomes float.
+// Camera order: flag > fit from P cross-checked with the header > header > ERR_INPUT naming --fov, --ortho, --camera.
+// Without P: positions from depth (planar or radial); without N: normals from depth (said in a warning).
+// A frame without any surface is not an error: valid = 0, and the camera is whatever is known.
+bool gbuffer_build(const exr_file *file, const resolution *r, const gbuffer_options *options, gbuffer *out, log_t *log, error *e);
+void gbuffer_free(gbuffer *g);
+
+// Camera-space position of pixel (x, y), from its depth; z = 0 where there is no surface.
+vec3 gbuffer_position(const gbuffer *g, int x, int y);
+
+// The automatic occlusion radius of one frame, scene units: a fixed share of the visible surfaces' extent (source and share in
+// radius.c). 0 without surfaces.
+double gbuffer_auto_radius(const gbuffer *g);
+
+#endif

@@ -1,0 +1,63 @@
+// Which channel is what: names, space, unit and encoding of the input's channels, by convention table and by measurement.
+//
+// The table (conventions.c) has a row per renderer; every conclusion can be overridden by an option.
+#ifndef SSDO_GBUFFER_RESOLVE_H
+#define SSDO_GBUFFER_RESOLVE_H
+
+#include "base/error.h"
+#include "base/log.h"
+#include "exr/file.h"
+
+// What a channel (or a group of up to four) is used for.
+typedef enum role {
+    ROLE_POSITION,         // 3
+    ROLE_NORMAL,           // 3
+    ROLE_DEPTH,            // 1
+    ROLE_ALBEDO,           // 3
+    ROLE_BEAUTY,           // 3
+    ROLE_ALPHA,            // 1
+    ROLE_ROUGHNESS,        // 1
+    ROLE_METALLIC,         // 1
+    ROLE_EMISSION,         // 3
+    ROLE_DIFFUSE_DIRECT,   // 3, light before albedo
+    ROLE_DIFFUSE_INDIRECT, // 3, light before albedo
+    ROLE_COUNT
+} role;
+
+const char *role_name(role r); // "position", ...
+
+typedef struct channel_ref {
+    int part, channel;
+} channel_ref; // part -1: absent
+
+typedef enum depth_kind { DEPTH_AUTO, DEPTH_PLANAR, DEPTH_RADIAL } depth_kind;
+typedef enum albedo_kind { ALBEDO_AUTO, ALBEDO_BASE, ALBEDO_DIFFUSE } albedo_kind;
+
+typedef struct resolve_options {
+    const char *names[ROLE_COUNT]; // --position, --normal, ...: layer or channel name; NULL = detect
+    const char *view_layer;        // --view-layer, NULL = the only one
+    depth_kind depth;
+    albedo_kind albedo;
+} resolve_options;
+
+typedef struct resolution {
+    channel_ref channels[ROLE_COUNT][4]; // components in order X Y Z / R G B
+    int components[ROLE_COUNT];          // 0 = absent
+    const char *convention;              // table row's name: "blender", "plain", ...
+    char view_layer[128];
+    int main_part;           // the part that position/depth live in; its windows are the frame's
+    depth_kind depth;        // DEPTH_AUTO until measured against P
+    albedo_kind albedo;      // never AUTO after resolve
+    bool up_is_z;            // the renderer's world up: default of --env-up
+    double background_depth; // depths at or beyond this are background (besides inf, NaN, <= 0)
+} resolution;
+
+// Finds the roles in the headers (no pixels needed). Several candidate sets (view layers) without --view-layer: ERR_INPUT listing
+// them. An override that names no channel: ERR_INPUT naming it. Neither position nor depth: ERR_INPUT listing what was looked
+// for, what the file has, and the flags that help. A missing normal is no error here (they can come from depth).
+bool resolve_channels(const exr_file *file, const resolve_options *options, resolution *out, log_t *log, error *e);
+
+// "position: ViewLayer.Position.X/Y/Z (part 0, float)", one line a role, into buf.
+void resolve_describe(const exr_file *file, const resolution *r, role which, char *buf, size_t size);
+
+#endif

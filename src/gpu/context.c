@@ -1,0 +1,171 @@
+#include <dlfcn.h>
+#include <epoxy/egl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "gpu/gpu.h"
+#include "gpu/internal.h"
+
+enum { MAX_DEVICES = 32 };
+
+static bool has_token(const char *list, const char *token)
+{
+    size_t n = strlen(token);
+    for (const char *p = list; p && (p = strstr(p, token)); p += n)
+        if ((p == list || p[-1] == ' ') && (p[n] == ' ' || p[n] == 0)) return true;
+    return false;
+}
+
+// libepoxy ends the process when libEGL is missing, so we look first. The handle stays open: epoxy uses it in a moment.
+static bool have_egl(void) { return dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL) != NULL; }
+
+static const char *client_extensions(void)
+{
+    const char *s = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    return s ? s : "";
+}
+
+// Makes a 4.5 core context current on an initialised display, with reset notification where it is offered.
+static EGLContext make_context(EGLDisplay display, bool *robust)
+{
+    const char *extensions = eglQueryString(display, EGL_EXTENSIONS);
+    if (!has_token(extensions, "EGL_KHR_surfaceless_context") || !has_token(extensions, "EGL_KHR_create_context")) return NULL;
+    EGLConfig config = EGL_NO_CONFIG_KHR;
+    if (!has_token(extensions, "EGL_KHR_no_config_context") && !has_token(extensions, "EGL_MESA_configless_context")) {
+        EGLint count = 0, want[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0, EGL_NONE};
+        if (!eglChooseConfig(display, want, &config, 1, &count) || count < 1) return NULL;
+    }
+    if (!eglBindAPI(EGL_OPENGL_API)) return NULL;
+    EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                           4,
+                           EGL_CONTEXT_MINOR_VERSION,
+                           5,
+                           EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                           EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                           EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                           EGL_LOSE_CONTEXT_ON_RESET,
+                           EGL_NONE};
+    EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
+    *robust = context != EGL_NO_CONTEXT;
+    if (context == EGL_NO_CONTEXT) {
+        attributes[6] = EGL_NONE;
+        context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
+    }
+    if (context == EGL_NO_CONTEXT) return NULL;
+    if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) return context;
+    eglDestroyContext(display, context);
+    return NULL;
+}
+
+static bool try_display(gpu *g, EGLDisplay display, const char *platform)
+{
+    if (display == EGL_NO_DISPLAY || !eglInitialize(display, NULL, NULL)) return false;
+    bool robust = false;
+    EGLContext context = make_context(display, &robust);
+    if (!context) {
+        eglTerminate(display);
+        return false;
+    }
+    g->display = display;
+    g->context = context;
+    g->robust = robust;
+    snprintf(g->renderer, sizeof g->renderer, "%s", (const char *)glGetString(GL_RENDERER));
+    snprintf(g->version, sizeof g->version, "%s", (const char *)glGetString(GL_VERSION));
+    snprintf(g->platform, sizeof g->platform, "%s", platform);
+    g->software = strstr(g->renderer, "llvmpipe") || strstr(g->renderer, "softpipe") || strstr(g->renderer, "SWR");
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &g->max_size);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    return true;
+}
+
+static int query_devices(EGLDeviceEXT *devices)
+{
+    EGLint count = 0;
+    const char *extensions = client_extensions();
+    if (!has_token(extensions, "EGL_EXT_device_enumeration") && !has_token(extensions, "EGL_EXT_device_base")) return 0;
+    if (!has_token(extensions, "EGL_EXT_platform_device")) return 0;
+    return eglQueryDevicesEXT(MAX_DEVICES, devices, &count) ? count : 0;
+}
+
+static bool is_software(EGLDeviceEXT device)
+{
+    return has_token(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
+}
+
+static bool open_device(gpu *g, EGLDeviceEXT device)
+{
+    return try_display(g, eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, NULL), "EGL device");
+}
+
+// Hardware devices in their order, then the software ones, then the surfaceless platform, which needs no device.
+static bool open_first(gpu *g, EGLDeviceEXT *devices, int count)
+{
+    for (int software = 0; software < 2; software++)
+        for (int i = 0; i < count; i++)
+            if (is_software(devices[i]) == (software == 1) && open_device(g, devices[i])) return true;
+    if (!has_token(client_extensions(), "EGL_MESA_platform_surfaceless")) return false;
+    return try_display(g, eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL), "EGL surfaceless");
+}
+
+bool gpu_open(gpu *g, int device, log_t *log, error *e)
+{
+    *g = (gpu){0};
+    if (!have_egl())
+        return err_set(e, ERR_GL, NULL, NULL,
+                       "libEGL.so.1 cannot be loaded; install a GL driver (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri)");
+    EGLDeviceEXT devices[MAX_DEVICES];
+    int count = query_devices(devices);
+    if (device >= count)
+        return err_set(e, ERR_GL, NULL, NULL, "there is no device %d; --list-devices shows the %d there are", device, count);
+    if (device >= 0 ? !open_device(g, devices[device]) : !open_first(g, devices, count))
+        return err_set(e, ERR_GL, NULL, NULL,
+                       device >= 0 ? "EGL device %d gives no OpenGL 4.5 core context; --list-devices shows which do"
+                                   : "no EGL device or surfaceless platform gives an OpenGL 4.5 core context; install a driver "
+                                     "(Debian: libegl-mesa0 libgl1-mesa-dri) and see --list-devices",
+                       device);
+    log_info(log, "device: %s, %s (%s%s)", g->renderer, g->version, g->platform, g->software ? ", software" : "");
+    return true;
+}
+
+void gpu_close(gpu *g)
+{
+    if (!g->context) return;
+    gpu_programs_free(g);
+    eglMakeCurrent(g->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(g->display, g->context);
+    eglTerminate(g->display);
+    *g = (gpu){0};
+}
+
+int gpu_list_devices(gpu_device *list, int max)
+{
+    if (!have_egl()) return 0;
+    EGLDeviceEXT devices[MAX_DEVICES];
+    int count = query_devices(devices);
+    for (int i = 0; i < count && i < max; i++) {
+        gpu g = {0};
+        list[i] = (gpu_device){.software = is_software(devices[i]), .usable = open_device(&g, devices[i])};
+        const char *node = has_token(eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS), "EGL_EXT_device_drm")
+                               ? eglQueryDeviceStringEXT(devices[i], EGL_DRM_DEVICE_FILE_EXT)
+                               : NULL;
+        snprintf(list[i].description, sizeof list[i].description, "%s%s%s%s",
+                 list[i].usable ? g.renderer : "no OpenGL 4.5 core context", list[i].software ? " (software)" : "",
+                 node ? " " : "", node ? node : "");
+        gpu_close(&g);
+    }
+    return count < max ? count : max;
+}
+
+bool gpu_finish(gpu *g, const char *what, error *e)
+{
+    glFinish();
+    if (g->robust && glGetGraphicsResetStatus() != GL_NO_ERROR)
+        return err_set(e, ERR_GL, NULL, NULL, "the GL context was lost during %s; run the frame again", what);
+    GLenum code = glGetError();
+    if (code == GL_NO_ERROR) return true;
+    while (glGetError() != GL_NO_ERROR) {}
+    if (code == GL_OUT_OF_MEMORY) return err_set(e, ERR_MEMORY, NULL, NULL, "the GL device ran out of memory during %s", what);
+    return err_set(e, ERR_GL, NULL, NULL, "GL error 0x%04x during %s", code, what);
+}

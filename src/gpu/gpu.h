@@ -1,0 +1,93 @@
+// A headless OpenGL 4.5 core context and the few things the passes need of it: programs, images, buffers, timing.
+//
+// Everything here is called from the thread that created the context. One `gpu` serves a whole batch of frames. Functions that
+// can fail fill an error with ERR_GL (ERR_MEMORY when GL ran out of memory).
+#ifndef SSDO_GPU_GPU_H
+#define SSDO_GPU_GPU_H
+
+#include <epoxy/gl.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/error.h"
+#include "base/log.h"
+
+typedef struct gpu_program_entry gpu_program_entry;
+
+typedef struct gpu {
+    void *display, *context; // EGLDisplay, EGLContext
+    char renderer[160], version[96], platform[48];
+    bool software; // a software rasteriser
+    int max_size;  // largest texture side
+    bool robust;   // the context reports resets
+    gpu_program_entry *programs;
+    int program_count;
+} gpu;
+
+// One EGL device as --list-devices shows it.
+typedef struct gpu_device {
+    char description[256];
+    bool software, usable;
+} gpu_device;
+
+// Opens device number `device` (as listed), or with -1 the first usable one, hardware before software, falling back to the
+// surfaceless platform. Says on the log which one.
+bool gpu_open(gpu *g, int device, log_t *log, error *e);
+void gpu_close(gpu *g);
+
+// Fills up to `max` devices, returns how many there are. Each is initialised and tried.
+int gpu_list_devices(gpu_device *list, int max);
+
+// ---- programs
+// ------------------------------------------------------------------------------------------------------------------- The compute
+// program of shaders/<name> with "#define"s put before it ("LIGHT 1\nSAMPLES 4\n": one a line, without the word). Compiled once
+// per name and defines, kept until gpu_close. 0 on failure; the message names the file and line of the source.
+GLuint gpu_program(gpu *g, const char *name, const char *defines, error *e);
+
+// ---- images
+// ---------------------------------------------------------------------------------------------------------------------
+typedef struct gpu_image {
+    GLuint id; // 0: no image
+    GLenum format;
+    int width, height, levels;
+} gpu_image;
+
+bool gpu_image_make(gpu *g, gpu_image *image, GLenum format, int width, int height, int levels, error *e);
+void gpu_image_free(gpu_image *image);
+// Whole level from/to tightly packed floats with as many components as the format has.
+void gpu_image_upload(gpu_image *image, int level, const float *pixels);
+void gpu_image_download(const gpu_image *image, float *pixels);
+void gpu_image_clear(gpu_image *image, const float value[4]);
+// Binds as image unit `unit` for reading, writing or both. An image with id 0 is skipped.
+void gpu_bind_image(int unit, const gpu_image *image, GLenum access);
+
+// ---- uniform buffers
+// ------------------------------------------------------------------------------------------------------------
+GLuint gpu_uniforms_make(size_t size);
+void gpu_uniforms_set(GLuint buffer, int binding, const void *data, size_t size);
+void gpu_uniforms_free(GLuint buffer);
+
+// Waits for all work, and turns what GL has to say (errors, lost context, out of memory) into an error.
+bool gpu_finish(gpu *g, const char *what, error *e);
+
+// ---- tiles
+// ---------------------------------------------------------------------------------------------------------------------- The
+// frame is worked on in square tiles, one dispatch each, so that no dispatch is long enough to trip a driver's watchdog, and a
+// tile without any surface is not dispatched at all. Results do not depend on the tile size.
+typedef struct gpu_tiles {
+    int width, height, size, columns, rows;
+    unsigned char *occupied; // columns * rows
+    int occupied_count;
+} gpu_tiles;
+
+enum { GPU_GROUP = 8, GPU_TILE = 128 }; // a work group is GPU_GROUP^2 pixels
+
+// A tile is occupied if any of its pixels has mask[i] != 0 or (coverage given) coverage[i] > 0.
+bool gpu_tiles_make(gpu_tiles *t, int width, int height, int size, const float *mask, const float *coverage, error *e);
+void gpu_tiles_free(gpu_tiles *t);
+
+// Runs the program in use over every occupied tile (all tiles if `everywhere`), the tile's rectangle in uniform location 0
+// (ivec4: x0 y0 x1 y1, end exclusive), with the memory barriers that image reads of the next pass need.
+void gpu_dispatch_tiles(const gpu_tiles *t, bool everywhere);
+
+#endif

@@ -1,0 +1,142 @@
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "gpu/gpu.h"
+
+static GLenum transfer_format(GLenum format)
+{
+    switch (format) {
+    case GL_R32F:
+    case GL_R16F:
+        return GL_RED;
+    case GL_RG32F:
+    case GL_RG16F:
+        return GL_RG;
+    default:
+        return GL_RGBA;
+    }
+}
+
+bool gpu_image_make(gpu *g, gpu_image *image, GLenum format, int width, int height, int levels, error *e)
+{
+    *image = (gpu_image){.format = format, .width = width, .height = height, .levels = levels};
+    if (width > g->max_size || height > g->max_size)
+        return err_set(e, ERR_GL, NULL, NULL, "an image of %d x %d is larger than this device's limit of %d pixels a side", width,
+                       height, g->max_size);
+    glCreateTextures(GL_TEXTURE_2D, 1, &image->id);
+    glTextureStorage2D(image->id, levels, format, width, height);
+    glTextureParameteri(image->id, GL_TEXTURE_MIN_FILTER, levels > 1 ? GL_LINEAR_MIPMAP_LINEAR : GL_NEAREST);
+    glTextureParameteri(image->id, GL_TEXTURE_MAG_FILTER, levels > 1 ? GL_LINEAR : GL_NEAREST);
+    glTextureParameteri(image->id, GL_TEXTURE_WRAP_S, GL_REPEAT);
+    glTextureParameteri(image->id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    GLenum code = glGetError();
+    if (code == GL_NO_ERROR) return true;
+    gpu_image_free(image);
+    return err_set(e, code == GL_OUT_OF_MEMORY ? ERR_MEMORY : ERR_GL, NULL, NULL,
+                   "the GL device cannot hold another image of %d x %d pixels (GL error 0x%04x)", width, height, code);
+}
+
+void gpu_image_free(gpu_image *image)
+{
+    if (image->id) glDeleteTextures(1, &image->id);
+    *image = (gpu_image){0};
+}
+
+void gpu_image_upload(gpu_image *image, int level, const float *pixels)
+{
+    int w = image->width >> level, h = image->height >> level;
+    glTextureSubImage2D(image->id, level, 0, 0, w > 0 ? w : 1, h > 0 ? h : 1, transfer_format(image->format), GL_FLOAT, pixels);
+}
+
+void gpu_image_download(const gpu_image *image, float *pixels)
+{
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    size_t components = transfer_format(image->format) == GL_RED ? 1 : transfer_format(image->format) == GL_RG ? 2 : 4;
+    size_t bytes = (size_t)image->width * (size_t)image->height * components * sizeof(float);
+    // glGetTextureImage counts its buffer in a GLsizei; larger images go in bands.
+    int rows = image->height;
+    if (bytes > 0x40000000u) rows = (int)(0x40000000u / ((size_t)image->width * components * sizeof(float)));
+    for (int y = 0; y < image->height; y += rows) {
+        int n = image->height - y < rows ? image->height - y : rows;
+        glGetTextureSubImage(image->id, 0, 0, y, 0, image->width, n, 1, transfer_format(image->format), GL_FLOAT,
+                             (GLsizei)((size_t)n * (size_t)image->width * components * sizeof(float)),
+                             pixels + (size_t)y * (size_t)image->width * components);
+    }
+}
+
+void gpu_image_clear(gpu_image *image, const float value[4])
+{
+    glClearTexImage(image->id, 0, transfer_format(image->format), GL_FLOAT, value);
+}
+
+void gpu_bind_image(int unit, const gpu_image *image, GLenum access)
+{
+    if (image->id) glBindImageTexture((GLuint)unit, image->id, 0, GL_FALSE, 0, access, image->format);
+}
+
+GLuint gpu_uniforms_make(size_t size)
+{
+    GLuint buffer = 0;
+    glCreateBuffers(1, &buffer);
+    glNamedBufferData(buffer, (GLsizeiptr)size, NULL, GL_DYNAMIC_DRAW);
+    return buffer;
+}
+
+void gpu_uniforms_set(GLuint buffer, int binding, const void *data, size_t size)
+{
+    glNamedBufferSubData(buffer, 0, (GLsizeiptr)size, data);
+    glBindBufferBase(GL_UNIFORM_BUFFER, (GLuint)binding, buffer);
+}
+
+void gpu_uniforms_free(GLuint buffer)
+{
+    if (buffer) glDeleteBuffers(1, &buffer);
+}
+
+static bool any_surface(const gpu_tiles *t, int column, int row, const float *mask, const float *coverage)
+{
+    int x1 = (column + 1) * t->size, y1 = (row + 1) * t->size;
+    if (x1 > t->width) x1 = t->width;
+    if (y1 > t->height) y1 = t->height;
+    for (int y = row * t->size; y < y1; y++)
+        for (int x = column * t->size; x < x1; x++) {
+            size_t i = (size_t)y * (size_t)t->width + (size_t)x;
+            if (mask[i] != 0.0f || (coverage && coverage[i] > 0.0f)) return true;
+        }
+    return false;
+}
+
+bool gpu_tiles_make(gpu_tiles *t, int width, int height, int size, const float *mask, const float *coverage, error *e)
+{
+    *t = (gpu_tiles){.width = width, .height = height, .size = size};
+    t->columns = (width + size - 1) / size;
+    t->rows = (height + size - 1) / size;
+    t->occupied = mem_zero((size_t)t->columns * (size_t)t->rows, 1, e);
+    if (!t->occupied) return false;
+    for (int row = 0; row < t->rows; row++)
+        for (int column = 0; column < t->columns; column++) {
+            bool any = any_surface(t, column, row, mask, coverage);
+            t->occupied[row * t->columns + column] = any;
+            t->occupied_count += any;
+        }
+    return true;
+}
+
+void gpu_tiles_free(gpu_tiles *t)
+{
+    free(t->occupied);
+    *t = (gpu_tiles){0};
+}
+
+void gpu_dispatch_tiles(const gpu_tiles *t, bool everywhere)
+{
+    for (int row = 0; row < t->rows; row++)
+        for (int column = 0; column < t->columns; column++) {
+            if (!everywhere && !t->occupied[row * t->columns + column]) continue;
+            int x0 = column * t->size, y0 = row * t->size;
+            int x1 = x0 + t->size < t->width ? x0 + t->size : t->width, y1 = y0 + t->size < t->height ? y0 + t->size : t->height;
+            glUniform4i(0, x0, y0, x1, y1);
+            glDispatchCompute((GLuint)(x1 - x0 + GPU_GROUP - 1) / GPU_GROUP, (GLuint)(y1 - y0 + GPU_GROUP - 1) / GPU_GROUP, 1);
+        }
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+}

@@ -1,0 +1,170 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "gpu/gpu.h"
+#include "gpu/internal.h"
+#include "gpu/shaders.h"
+
+struct gpu_program_entry {
+    char *key; // name and defines
+    GLuint id;
+};
+
+enum { MAX_SOURCES = 24 };
+
+// A growing text, and the files it was spliced from: GLSL's "#line n file" carries an index into `files`.
+typedef struct splice {
+    char *text;
+    size_t length, room;
+    const char *files[MAX_SOURCES];
+    char *loaded[MAX_SOURCES]; // texts read from disk, to be freed
+    int file_count;
+} splice;
+
+static bool append(splice *s, const char *text, size_t n, error *e)
+{
+    if (s->length + n + 1 > s->room) {
+        size_t room = (s->length + n + 1) * 2;
+        char *grown = mem_grow(s->text, room, 1, e);
+        if (!grown) return false;
+        s->text = grown;
+        s->room = room;
+    }
+    memcpy(s->text + s->length, text, n);
+    s->length += n;
+    s->text[s->length] = 0;
+    return true;
+}
+
+static char *read_file(const char *dir, const char *name, error *e)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/%s", dir, name);
+    FILE *f = fopen(path, "rb");
+    if (!f) {
+        err_set(e, ERR_GL, path, NULL, "this shader cannot be read; SSDO_SHADER_DIR must name the project's shaders folder");
+        return NULL;
+    }
+    fseek(f, 0, SEEK_END);
+    long size = ftell(f);
+    rewind(f);
+    char *text = size >= 0 ? mem_zero((size_t)size + 1, 1, e) : NULL;
+    if (text && fread(text, 1, (size_t)size, f) != (size_t)size) text[0] = 0;
+    fclose(f);
+    return text;
+}
+
+static const char *source_of(splice *s, const char *name, error *e)
+{
+    const char *dir = getenv("SSDO_SHADER_DIR");
+    if (dir && *dir) return s->loaded[s->file_count] = read_file(dir, name, e);
+    for (const shader_source *p = shader_sources; p->name; p++)
+        if (strcmp(p->name, name) == 0) return p->text;
+    err_set(e, ERR_GL, name, NULL, "there is no shader of this name");
+    return NULL;
+}
+
+// Splices the file's lines, following #include "..." once per file. A first line "#version" goes before the defines.
+static bool splice_file(splice *s, const char *name, const char *defines, error *e)
+{
+    for (int i = 0; i < s->file_count; i++)
+        if (strcmp(s->files[i], name) == 0) return true;
+    if (s->file_count == MAX_SOURCES) return err_set(e, ERR_GL, name, NULL, "too many included shader files");
+    const char *text = source_of(s, name, e);
+    if (!text) return false;
+    int index = s->file_count++;
+    s->files[index] = name;
+    char line_mark[64];
+    int line = 1;
+    for (const char *p = text; *p; line++) {
+        const char *end = strchr(p, '\n');
+        size_t n = end ? (size_t)(end - p) + 1 : strlen(p);
+        if (strncmp(p, "#include \"", 10) == 0) {
+            const char *quote = strchr(p + 10, '"');
+            char *included = mem_zero(n, 1, e);
+            if (!included || !quote) return false;
+            memcpy(included, p + 10, (size_t)(quote - p - 10));
+            snprintf(line_mark, sizeof line_mark, "#line 1 %d\n", s->file_count);
+            // The name outlives this call inside `files`; MAX_SOURCES bounds what is kept, freed with the process's programs.
+            bool ok = append(s, line_mark, strlen(line_mark), e) && splice_file(s, included, NULL, e);
+            snprintf(line_mark, sizeof line_mark, "#line %d %d\n", line + 1, index);
+            if (!ok || !append(s, line_mark, strlen(line_mark), e)) return false;
+        } else if (!append(s, p, n, e)) {
+            return false;
+        } else if (strncmp(p, "#version", 8) == 0 && defines) {
+            for (const char *d = defines; *d;) {
+                size_t m = strcspn(d, "\n");
+                if (m && (!append(s, "#define ", 8, e) || !append(s, d, m, e) || !append(s, "\n", 1, e))) return false;
+                d += m + (d[m] == '\n');
+            }
+            if (!append(s, "#line 2 0\n", 10, e)) return false;
+        }
+        p += n;
+    }
+    return true;
+}
+
+static GLuint compile(const splice *s, const char *name, error *e)
+{
+    GLuint shader = glCreateShader(GL_COMPUTE_SHADER), program = glCreateProgram();
+    const char *text = s->text;
+    char message[400] = "";
+    GLint ok = 0;
+    glShaderSource(shader, 1, &text, NULL);
+    glCompileShader(shader);
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+    if (!ok) glGetShaderInfoLog(shader, sizeof message, NULL, message);
+    if (ok) {
+        glAttachShader(program, shader);
+        glLinkProgram(program);
+        glGetProgramiv(program, GL_LINK_STATUS, &ok);
+        if (!ok) glGetProgramInfoLog(program, sizeof message, NULL, message);
+    }
+    glDeleteShader(shader);
+    if (ok) return program;
+    glDeleteProgram(program);
+    int file = 0; // messages start with the file's number: "2:14(5): error"
+    sscanf(message, "%d", &file);
+    if (file < 0 || file >= s->file_count) file = 0;
+    err_set(e, ERR_GL, s->files[file], NULL, "the driver refuses shader %s: %.300s", name, message);
+    return 0;
+}
+
+GLuint gpu_program(gpu *g, const char *name, const char *defines, error *e)
+{
+    char key[512];
+    snprintf(key, sizeof key, "%s\n%s", name, defines ? defines : "");
+    for (int i = 0; i < g->program_count; i++)
+        if (strcmp(g->programs[i].key, key) == 0) return g->programs[i].id;
+    splice s = {0};
+    GLuint id = splice_file(&s, name, defines ? defines : "", e) ? compile(&s, name, e) : 0;
+    for (int i = 0; i < s.file_count; i++) {
+        free(s.loaded[i]);
+        if (i > 0) free((char *)s.files[i]);
+    }
+    free(s.text);
+    if (!id) return 0;
+    gpu_program_entry *grown = mem_grow(g->programs, (size_t)g->program_count + 1, sizeof *grown, e);
+    char *kept = mem_string(key, e);
+    if (grown) g->programs = grown;
+    if (!grown || !kept) {
+        free(kept);
+        glDeleteProgram(id);
+        return 0;
+    }
+    g->programs[g->program_count++] = (gpu_program_entry){kept, id};
+    return id;
+}
+
+void gpu_programs_free(gpu *g)
+{
+    for (int i = 0; i < g->program_count; i++) {
+        glDeleteProgram(g->programs[i].id);
+        free(g->programs[i].key);
+    }
+    free(g->programs);
+    g->programs = NULL;
+    g->program_count = 0;
+}

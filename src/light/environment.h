@@ -1,0 +1,58 @@
+// The environment light: a lat-long map, prepared once in double on the CPU.
+//
+// Texel (i, j) has its centre at ((i + 0.5) / width, (j + 0.5) / height). Two mappings of direction to (u, v), v from the top:
+//   up z (Blender's equirectangular):  u = 0.5 - atan2(y, x) / (2 pi),  v = acos(z) / pi
+//   up y (OpenEXR's latlong):          longitude = atan2(x, z), u = 0.5 - longitude / (2 pi),  v = acos(y) / pi
+// Inside the program there is ONE mapping, "up z"; `map_from_world` turns a world direction into it, so shaders know only
+//     u = 0.5 - atan2(y, x) / (2 pi), v = acos(z) / pi   of   d = map_from_world * world_direction.
+// rotate: the environment turns by `rotate` degrees counter-clockwise about the up axis (Blender's Mapping node with -rotate).
+// Values: NaN and negative become 0 (counted), +inf becomes the largest finite value of the map.
+#ifndef SSDO_LIGHT_ENVIRONMENT_H
+#define SSDO_LIGHT_ENVIRONMENT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/vec.h"
+
+enum { ENV_MAX_LEVELS = 16 };
+
+typedef struct env_options {
+    const char *path; // NULL: the white environment of radiance 1 (a 1x1 map)
+    bool up_z;
+    double rotate_degrees; // 0
+    double scale;          // 1
+    int threads;
+} env_options;
+
+typedef struct env_level {
+    int width, height;
+    float *rgba; // 4 a texel, a = 0
+} env_level;
+
+typedef struct environment {
+    bool white; // no map was given
+    mat3 map_from_world;
+    env_level levels[ENV_MAX_LEVELS]; // level 0 is the map itself; each next one halves both sizes (down to 1x1), its texels the
+    int level_count;  // solid-angle weighted means of what they cover, so that every level integrates to the same light
+    double sh[16][3]; // plain radiance coefficients L_lm, l <= 3, index l*l + l + m, in map space
+    double mean[3];   // mean radiance over the sphere
+    size_t repaired;  // texels that were NaN, infinite or negative
+} environment;
+
+bool environment_load(const env_options *options, environment *out, log_t *log, error *e);
+void environment_free(environment *env);
+
+// Radiance of level `level` by bilinear lookup (wrapping in u, clamped in v), map-space direction: what the shaders see.
+vec3 environment_lookup(const environment *env, vec3 map_direction, double level);
+
+// Exact solid angle of texel row j of a width x height lat-long map: (2 pi / width) (cos(pi j / height) - cos(pi (j + 1) /
+// height)).
+double env_texel_solid_angle(int width, int height, int j);
+
+// E / pi for a unit normal, by summing every texel of level 0: the slow, exact reference.
+vec3 environment_irradiance_over_pi(const environment *env, vec3 map_normal);
+
+#endif

@@ -1,0 +1,18 @@
+// Real spherical harmonics up to l = 3 and the irradiance formula of Ramamoorthi and Hanrahan (2001).
+// Order: index l*l + l + m. Conventions of the paper: Y_00 = 0.282095, Y_1-1 = 0.488603 y, Y_10 = 0.488603 z, Y_11 = 0.488603 x,
+// ...
+#ifndef SSDO_LIGHT_SH_H
+#define SSDO_LIGHT_SH_H
+
+#include "base/vec.h"
+
+enum { SH_MAX = 16 };
+
+// Y_lm(d) for l < bands (bands 1..4); d is a unit vector.
+void sh_basis(vec3 d, int bands, double y[SH_MAX]);
+
+// E(n) / pi, channel-wise, from radiance coefficients (l <= 2): the cosine-convolved sum A_l L_lm Y_lm(n) / pi with A = pi,
+// 2pi/3, pi/4.
+vec3 sh_irradiance_over_pi(const double sh[][3], vec3 n);
+
+#endif
