@@ -6,11 +6,12 @@ BINDIR   := $(PREFIX)/bin
 LIBDIR   := $(PREFIX)/lib/ssdo-filter
 MANDIR   := $(PREFIX)/share/man/man1
 BUILD    ?= build
-CC       ?= gcc
-CXX      ?= g++
+ifeq ($(origin CC),default)
+CC       := gcc
+endif
 
 # Debian packages: what the build needs, what `make check` needs on top.
-DEPS_BUILD := pkg-config libopenexr-dev libopenimageio-dev libopencolorio-dev libegl-dev libegl-mesa0 libgl1-mesa-dri libepoxy-dev \
+DEPS_BUILD := gcc g++ pkg-config libopenexr-dev libopenimageio-dev libopencolorio-dev libegl-dev libegl-mesa0 libgl1-mesa-dri libepoxy-dev \
               libdeflate-dev libjson-c-dev
 DEPS_CHECK := libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender libembree-dev man-db python3-minimal
 DEPS_BENCH := gnuplot-nox
@@ -25,7 +26,7 @@ SANFLAGS := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-omit-frame-pointer)
 WARN     := -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes
 CFLAGS   ?= -O2 -g
 # No contraction of a*b+c and no fast-math: results must be the same bytes on every machine of the same architecture.
-ALL_CFLAGS = -std=c17 -D_GNU_SOURCE -DSSDO_VERSION='"$(VERSION)"' -DSSDO_LIBDIR='"$(LIBDIR)"' -Isrc -I$(BUILD) $(PKG_CFLAGS) $(WARN) \
+ALL_CFLAGS = -std=c17 -D_GNU_SOURCE -DSSDO_VERSION='"$(VERSION)"' -DSSDO_LIBDIR='"$(LIBDIR)"' -Isrc -Itests/lib -I$(BUILD) $(PKG_CFLAGS) $(WARN) \
              $(CFLAGS) -ffp-contract=off $(SANFLAGS) $(EXTRA_CFLAGS)
 CXXFLAGS ?= -O2 -g
 ALL_CXXFLAGS = -std=c++17 -fPIC -fvisibility=hidden -Isrc $(CXXFLAGS) -Wall -Wextra $(SANFLAGS)

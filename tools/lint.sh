@@ -1,14 +1,37 @@
 #!/bin/sh
 # lint.sh BUILD: formatting and shader validation. Compiler warnings are errors in `make lint`'s second step.
 set -eu
-build=$1
-clang-format --dry-run -Werror $(find src tests -name '*.[ch]' -o -name '*.cpp' -path 'src/*')
-out=$build/lint
+out=$1/lint
 mkdir -p "$out"
-for f in shaders/*.comp shaders/*.frag shaders/*.vert; do
-    [ -e "$f" ] || continue
-    # glslangValidator knows includes only as an extension the drivers lack, so we splice them as the program does.
-    awk -v dir=shaders 'function cat(file,  line, name) { while ((getline line < file) > 0) { if (line ~ /^#include "/) { name = line; sub(/^#include "/, "", name); sub(/".*/, "", name); if (!(name in seen)) { seen[name] = 1; cat(dir "/" name) } } else print line } close(file) } BEGIN { cat(ARGV[1]); exit }' "$f" >"$out/$(basename "$f")"
-    glslangValidator "$out/$(basename "$f")" >"$out/log" || { cat "$out/log" >&2; exit 1; }
+clang-format --dry-run -Werror $(find src tests -name '*.[ch]' -o -name '*.cpp' -path 'src/*')
+
+# glslangValidator knows #include only as an extension that drivers lack, so the files are spliced the way src/gpu/program.c does.
+splice() {
+    awk -v dir=shaders '
+        function cat(file,  line, name) {
+            while ((getline line < file) > 0) {
+                if (line !~ /^#include "/) { print line; continue }
+                name = line
+                sub(/^#include "/, "", name)
+                sub(/".*/, "", name)
+                if (!(name in seen)) { seen[name] = 1; cat(dir "/" name) }
+            }
+            close(file)
+        }
+        BEGIN { cat(ARGV[1]); exit }' "$1"
+}
+
+# A shader with compile-time variants lists the sets to check in a comment: // lint: A B=2 | C
+count=0
+for f in shaders/*.comp; do
+    splice "$f" >"$out/$(basename "$f")"
+    sets=$(sed -n 's|^// lint: *||p' "$f")
+    echo "${sets:-NOTHING}" | tr '|' '\n' >"$out/sets"
+    while read -r set; do
+        defines=
+        for d in $set; do case $d in *=*) defines="$defines -D$d" ;; *) defines="$defines -D$d=1" ;; esac; done
+        glslangValidator -l $defines "$out/$(basename "$f")" >"$out/log" || { echo "lint: $f with $set:" >&2; cat "$out/log" >&2; exit 1; }
+        count=$((count + 1))
+    done <"$out/sets"
 done
-echo "lint: formatting and $(ls shaders/*.comp 2>/dev/null | wc -l) shaders are clean"
+echo "lint: formatting clean, $count shader variants valid"

@@ -210,7 +210,7 @@ static int min3(int a, int b, int c)
     return m < c ? m : c;
 }
 
-// Edits between two names: insert, delete, replace, or swap two neighbours (the commonest slip).
+// Edits between two names (Levenshtein).
 static int distance(const char *a, int n, const char *b)
 {
     int m = (int)strlen(b), d[NAME_MAX_LENGTH + 1][NAME_MAX_LENGTH + 1];
@@ -218,11 +218,7 @@ static int distance(const char *a, int n, const char *b)
     for (int i = 0; i <= n; i++) d[i][0] = i;
     for (int j = 0; j <= m; j++) d[0][j] = j;
     for (int i = 1; i <= n; i++)
-        for (int j = 1; j <= m; j++) {
-            d[i][j] = min3(d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1]));
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && d[i - 2][j - 2] + 1 < d[i][j])
-                d[i][j] = d[i - 2][j - 2] + 1;
-        }
+        for (int j = 1; j <= m; j++) d[i][j] = min3(d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1]));
     return d[n][m];
 }
 

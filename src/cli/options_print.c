@@ -10,7 +10,8 @@ enum { HELP_COLUMN = 30, HELP_WIDTH = 100 };
 static void print_wrapped(FILE *to, int at, const char *text)
 {
     while (*text) {
-        int n = (int)strcspn(text, " ");
+        size_t length = strcspn(text, " ");
+        int n = (int)length;
         if (at > HELP_COLUMN && at + 1 + n > HELP_WIDTH) {
             fprintf(to, "\n%*s", HELP_COLUMN, "");
             at = HELP_COLUMN;
@@ -18,7 +19,8 @@ static void print_wrapped(FILE *to, int at, const char *text)
             at += fprintf(to, " ");
         }
         at += fprintf(to, "%.*s", n, text);
-        text += n + strspn(text + n, " ");
+        text += length;
+        text += strspn(text, " ");
     }
     fprintf(to, "\n");
 }
@@ -56,22 +58,39 @@ void options_print_help(FILE *to)
                 "The manual: man ssdo-filter\n");
 }
 
-// Text for mdoc: one sentence a line, minus signs that can be copied, nothing taken for a macro or an escape.
-static void print_mdoc(FILE *to, const char *text)
+enum { MDOC_WIDTH = 78 };
+
+// One word for mdoc: minus signs that can be copied, nothing taken for a macro or an escape. Returns the bytes printed.
+static int print_mdoc_word(FILE *to, const char *word, size_t length, bool starts_line)
 {
-    bool start = true;
-    for (const char *p = text; *p; p++) {
-        if (start && (*p == '.' || *p == '\'')) fprintf(to, "\\&");
-        start = false;
-        if (*p == '\\')
-            fprintf(to, "\\e");
-        else if (*p == '-' && (p == text || p[-1] == ' ' || p[-1] == '-'))
-            fprintf(to, "\\-");
-        else if (*p == ' ' && p > text && p[-1] == '.') {
+    int bytes = starts_line && (*word == '.' || *word == '\'') ? fprintf(to, "\\&") : 0;
+    for (size_t i = 0; i < length; i++) {
+        if (word[i] == '\\')
+            bytes += fprintf(to, "\\e");
+        else if (word[i] == '-' && word[0] == '-')
+            bytes += fprintf(to, "\\-");
+        else
+            bytes += fprintf(to, "%c", word[i]);
+    }
+    return bytes;
+}
+
+// Text for mdoc, from column `at` on: sentences begin a line, as mdoc wants it, and long lines are wrapped.
+static void print_mdoc(FILE *to, int at, const char *text)
+{
+    bool sentence_end = false;
+    while (*text) {
+        size_t length = strcspn(text, " ");
+        if (sentence_end || (at > 0 && at + (int)length >= MDOC_WIDTH)) {
             fprintf(to, "\n");
-            start = true;
-        } else
-            fputc(*p, to);
+            at = 0;
+        } else if (at > 0) {
+            at += fprintf(to, " ");
+        }
+        at += print_mdoc_word(to, text, length, at == 0);
+        sentence_end = text[length - 1] == '.';
+        text += length;
+        text += strspn(text, " ");
     }
     fprintf(to, "\n");
 }
@@ -89,11 +108,8 @@ static void print_man_row(FILE *to, const option_row *row)
     print_mdoc_name(to, row->name);
     if (row->argument) fprintf(to, " Ar %s", row->argument);
     fprintf(to, "\n");
-    print_mdoc(to, row->help);
-    if (row->fallback) {
-        fprintf(to, "Default: ");
-        print_mdoc(to, row->fallback);
-    }
+    print_mdoc(to, 0, row->help);
+    if (row->fallback) print_mdoc(to, fprintf(to, "Default:"), row->fallback);
 }
 
 void options_print_man(FILE *to)

@@ -46,10 +46,10 @@ static void put_value(record *r, const char *text)
     put_string(r, "'");
 }
 
-// The shortest decimal that reads back as the same double. The caller has put the thread into the C locale.
+// The first of 15, 16, 17 digits that reads back as the same double. The caller has put the thread into the C locale.
 static void number_text(double v, char *buf, size_t size)
 {
-    for (int digits = 1; digits <= 17; digits++) {
+    for (int digits = 15; digits <= 17; digits++) {
         snprintf(buf, size, "%.*g", digits, v);
         if (strtod(buf, NULL) == v) return;
     }

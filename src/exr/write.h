@@ -15,7 +15,8 @@ typedef struct exr_out_channel {
     const void *data; // width * height samples of `type`, the part's data window, borrowed
 } exr_out_channel;
 
-typedef enum exr_attr_kind { EXR_ATTR_STRING, EXR_ATTR_FLOAT, EXR_ATTR_M44 } exr_attr_kind;
+// (OpenEXR owns the names EXR_ATTR_*.)
+typedef enum exr_attr_kind { EXR_OUT_STRING, EXR_OUT_FLOAT, EXR_OUT_M44 } exr_attr_kind;
 
 typedef struct exr_out_attr {
     const char *name;

@@ -4,9 +4,17 @@
 #ifndef SSDO_LIGHT_SH_H
 #define SSDO_LIGHT_SH_H
 
+#include <stdbool.h>
+
+#include "base/error.h"
 #include "base/vec.h"
 
 enum { SH_MAX = 16 };
+
+// Coefficients L_lm = integral of L Y_lm over the sphere, l <= 3, of a lat-long map in map space (environment.h): 4 floats a
+// texel, row-major, top row first. Exact for a map of constant texels: the basis itself is integrated over every texel, so maps
+// of any size, 1x1 included, come out right.
+bool sh_project(const float *rgba, int width, int height, int threads, double sh[SH_MAX][3], error *e);
 
 // Y_lm(d) for l < bands (bands 1..4); d is a unit vector.
 void sh_basis(vec3 d, int bands, double y[SH_MAX]);

@@ -1,0 +1,85 @@
+#version 450 core
+// lint: SCALARS=2 COLOURS=1 | SCALARS=1 COLOURS=0 | SCALARS=0 COLOURS=1
+// One direction of a separable bilateral filter on linear quantities. A tap's weight is a Gaussian of its distance, the agreement
+// of the normals, and the distance of the tap from the centre's tangent plane in pixel footprints (THEORY.md 1.7); weights are
+// always divided out. Pixels without a surface take no part.
+// SCALARS and COLOURS say how many r32f and rgba32f images go through together.
+#include "include/frame.glsl"
+
+layout(std140, binding = 1) uniform Params {
+    ivec2 step; // (1,0) or (0,1)
+    int radius; // pixels
+    float sharpness; // plane distance, in footprints, at which the weight has fallen to exp(-1/2)
+} params;
+
+#if SCALARS > 0
+layout(r32f, binding = 2) readonly uniform image2D scalar0_in;
+layout(r32f, binding = 3) writeonly uniform image2D scalar0_out;
+#endif
+#if SCALARS > 1
+layout(r32f, binding = 4) readonly uniform image2D scalar1_in;
+layout(r32f, binding = 5) writeonly uniform image2D scalar1_out;
+#endif
+#if COLOURS > 0
+layout(rgba32f, binding = 6) readonly uniform image2D colour0_in;
+layout(rgba32f, binding = 7) writeonly uniform image2D colour0_out;
+#endif
+
+struct Values { float scalar0, scalar1; vec4 colour0; };
+
+Values load(ivec2 p) {
+    Values v = Values(0.0, 0.0, vec4(0.0));
+#if SCALARS > 0
+    v.scalar0 = imageLoad(scalar0_in, p).r;
+#endif
+#if SCALARS > 1
+    v.scalar1 = imageLoad(scalar1_in, p).r;
+#endif
+#if COLOURS > 0
+    v.colour0 = imageLoad(colour0_in, p);
+#endif
+    return v;
+}
+
+void store(ivec2 p, Values v) {
+#if SCALARS > 0
+    imageStore(scalar0_out, p, vec4(v.scalar0));
+#endif
+#if SCALARS > 1
+    imageStore(scalar1_out, p, vec4(v.scalar1));
+#endif
+#if COLOURS > 0
+    imageStore(colour0_out, p, v.colour0);
+#endif
+}
+
+void main() {
+    ivec2 p = this_pixel();
+    if (!in_tile(p)) return;
+    Values centre = load(p);
+    float depth = depth_at(p);
+    if (depth == 0.0) {
+        store(p, centre);
+        return;
+    }
+    vec3 P = position_of(p, depth), N = normal_at(p);
+    float scale = 1.0 / (params.sharpness * footprint(depth));
+    float sigma = 0.5 * float(params.radius);
+    // Differences from the centre are summed, so that a constant passes unchanged to the bit.
+    Values sum = Values(0.0, 0.0, vec4(0.0));
+    float total = 1.0;
+    for (int i = -params.radius; i <= params.radius; i++) {
+        ivec2 q = p + i * params.step;
+        float tap_depth = depth_at(q);
+        if (i == 0 || tap_depth == 0.0) continue;
+        float off_plane = dot(N, position_of(q, tap_depth) - P) * scale;
+        float same_way = max(0.0, dot(N, normal_at(q)));
+        float w = exp(-0.5 * (float(i * i) / (sigma * sigma) + off_plane * off_plane)) * pow(same_way, 8.0);
+        Values v = load(q);
+        sum.scalar0 += w * (v.scalar0 - centre.scalar0);
+        sum.scalar1 += w * (v.scalar1 - centre.scalar1);
+        sum.colour0 += w * (v.colour0 - centre.colour0);
+        total += w;
+    }
+    store(p, Values(centre.scalar0 + sum.scalar0 / total, centre.scalar1 + sum.scalar1 / total, centre.colour0 + sum.colour0 / total));
+}

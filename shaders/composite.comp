@@ -1,0 +1,141 @@
+#version 450 core
+// lint: RELIGHT DIFFUSE ALBEDO RADIANCE INDIRECT SPECULAR EMISSION BEAUTY COVERAGE | RELIGHT VISIBILITY ALBEDO | SPLIT BEAUTY ALBEDO RADIANCE | BEAUTY ALBEDO INDIRECT COVERAGE
+// The lit picture (DESIGN.md, Composite). One of:
+//   RELIGHT            kD albedo (radiance + indirect) + specular + emission          (radiance mode)
+//   RELIGHT VISIBILITY kD albedo (E_SH / pi visibility + indirect) + specular + emission   (visibility mode)
+//   SPLIT              beauty - (1 - a) albedo direct  (+ albedo indirect)             only direct diffuse light is occluded
+//   (none)             beauty a (+ albedo indirect)                                    a = lerp(1, occlusion, amount)
+// Relit pixels that the surface covers by k < 1: k surface + (1 - k) background.
+#include "include/frame.glsl"
+#include "include/environment.glsl"
+
+layout(std140, binding = 1) uniform Params {
+    float amount;
+    int averaged;   // albedo and emission are stored already multiplied by coverage
+    int background; // what is behind surfaces: 0 nothing, 1 the beauty, 2 the environment
+    int unused;
+} params;
+
+layout(r32f, binding = 2) readonly uniform image2D occlusion_image; // visibility in VISIBILITY mode
+layout(rgba32f, binding = 3) writeonly uniform image2D composite_image;
+#ifdef ALBEDO
+layout(rgba32f, binding = 4) readonly uniform image2D albedo_image;
+#endif
+#ifdef RADIANCE
+layout(rgba32f, binding = 5) readonly uniform image2D radiance_image; // in SPLIT: the renderer's own direct diffuse light
+#endif
+#ifdef INDIRECT
+layout(rgba32f, binding = 6) readonly uniform image2D indirect_image;
+#endif
+#if defined(SPECULAR)
+layout(rgba32f, binding = 8) readonly uniform image2D specular_image;
+layout(rgba32f, binding = 9) readonly uniform image2D diffuse_share_image;
+#endif
+#ifdef EMISSION
+layout(rgba32f, binding = 10) readonly uniform image2D emission_image;
+#endif
+#ifdef BEAUTY
+layout(rgba32f, binding = 7) readonly uniform image2D beauty_image;
+#endif
+#ifdef COVERAGE
+layout(r32f, binding = 11) readonly uniform image2D coverage_image;
+#endif
+
+float coverage_at(ivec2 p) {
+#ifdef COVERAGE
+    return imageLoad(coverage_image, p).r;
+#else
+    return depth_at(p) != 0.0 ? 1.0 : 0.0;
+#endif
+}
+
+vec3 indirect_at(ivec2 p) {
+#ifdef INDIRECT
+    return imageLoad(indirect_image, p).rgb;
+#else
+    return vec3(0.0);
+#endif
+}
+
+#ifdef DIFFUSE
+layout(rgba32f, binding = 12) writeonly uniform image2D diffuse_image; // kD albedo (radiance + indirect), per unit coverage times k
+#endif
+
+#ifdef RELIGHT
+// Light of the surface in pixel p, multiplied by its coverage k.
+vec3 surface(ivec2 p, float k) {
+    vec3 light = indirect_at(p);
+#ifdef VISIBILITY
+    light += sh_irradiance_over_pi(to_map(normal_at(p))) * imageLoad(occlusion_image, p).r;
+#else
+    light += imageLoad(radiance_image, p).rgb;
+#endif
+    float covered = params.averaged == 1 ? 1.0 : k;
+    vec3 colour = covered * imageLoad(albedo_image, p).rgb * light;
+#ifdef SPECULAR
+    colour *= imageLoad(diffuse_share_image, p).rgb;
+#endif
+#ifdef DIFFUSE
+    imageStore(diffuse_image, p, vec4(colour, 0.0));
+#endif
+#ifdef SPECULAR
+    colour += k * imageLoad(specular_image, p).rgb;
+#endif
+#ifdef EMISSION
+    colour += covered * imageLoad(emission_image, p).rgb;
+#endif
+    return colour;
+}
+
+// What is seen behind the surface of pixel p: the beauty of the nearest pixel that no surface touches, or the environment.
+vec3 background(ivec2 p) {
+    if (params.background == 2) {
+        vec3 ray = is_orthographic() ? vec3(0.0, 0.0, 1.0) : normalize(ray_at(vec2(p) + 0.5));
+        vec3 direction = to_map(ray);
+        float pixel = 1.0 / (frame.lens.x * frame.lens.y) * pow(ray.z, 3.0);
+        return radiance_from(direction, is_orthographic() ? 0.0 : map_level(direction, pixel));
+    }
+#ifdef BEAUTY
+    if (params.background == 1) {
+        int best = 1 << 20;
+        vec3 colour = vec3(0.0);
+        for (int y = -2; y <= 2; y++)
+            for (int x = -2; x <= 2; x++) {
+                ivec2 q = p + ivec2(x, y);
+                if (in_frame(q) && coverage_at(q) == 0.0 && x * x + y * y < best) {
+                    best = x * x + y * y;
+                    colour = imageLoad(beauty_image, q).rgb;
+                }
+            }
+        return colour;
+    }
+#endif
+    return vec3(0.0);
+}
+
+vec3 composite(ivec2 p) {
+    float k = coverage_at(p);
+    vec3 colour = k > 0.0 ? surface(p, k) : vec3(0.0);
+    return k < 1.0 ? colour + (1.0 - k) * background(p) : colour;
+}
+#else
+vec3 composite(ivec2 p) {
+    vec3 colour = imageLoad(beauty_image, p).rgb;
+    float open = mix(1.0, imageLoad(occlusion_image, p).r, params.amount);
+#ifdef SPLIT
+    colour -= (1.0 - open) * imageLoad(albedo_image, p).rgb * imageLoad(radiance_image, p).rgb;
+#else
+    colour *= open;
+#endif
+#ifdef INDIRECT
+    colour += imageLoad(albedo_image, p).rgb * indirect_at(p) * (params.averaged == 1 ? 1.0 : coverage_at(p));
+#endif
+    return colour;
+}
+#endif
+
+void main() {
+    ivec2 p = this_pixel();
+    if (!in_tile(p)) return;
+    imageStore(composite_image, p, vec4(composite(p), 0.0));
+}

@@ -1,0 +1,50 @@
+#version 450 core
+// lint: VISIBILITY RADIANCE INDIRECT | NOTHING
+// Layers of pixels that a surface covers only in part and whose centre missed it (no position): taken from the nearest pixel with a
+// surface, of those equally near the one with the most similar normal (DESIGN.md, Edges).
+#include "include/frame.glsl"
+
+layout(r32f, binding = 2) readonly uniform image2D coverage_image;
+// Written only where there is no surface and read only where there is one, so no pixel is both.
+layout(r32f, binding = 3) uniform image2D occlusion_image;
+#ifdef VISIBILITY
+layout(r32f, binding = 4) uniform image2D visibility_image;
+#endif
+#ifdef RADIANCE
+layout(rgba32f, binding = 5) uniform image2D radiance_image;
+#endif
+#ifdef INDIRECT
+layout(rgba32f, binding = 6) uniform image2D indirect_image;
+#endif
+
+const int REACH = 2;
+
+void main() {
+    ivec2 p = this_pixel();
+    if (!in_tile(p) || depth_at(p) != 0.0 || imageLoad(coverage_image, p).r <= 0.0) return;
+    vec3 N = normal_at(p);
+    float best = 1e9;
+    ivec2 from = p;
+    for (int y = -REACH; y <= REACH; y++)
+        for (int x = -REACH; x <= REACH; x++) {
+            ivec2 q = p + ivec2(x, y);
+            if (depth_at(q) == 0.0) continue;
+            // Normals decide among neighbours of one distance, and veto only by half a pixel: the foreground is the nearest.
+            float cost = float(x * x + y * y) + 0.9 * (1.0 - dot(N, normal_at(q)));
+            if (cost < best) {
+                best = cost;
+                from = q;
+            }
+        }
+    if (from == p) return;
+    imageStore(occlusion_image, p, imageLoad(occlusion_image, from));
+#ifdef VISIBILITY
+    imageStore(visibility_image, p, imageLoad(visibility_image, from));
+#endif
+#ifdef RADIANCE
+    imageStore(radiance_image, p, imageLoad(radiance_image, from));
+#endif
+#ifdef INDIRECT
+    imageStore(indirect_image, p, imageLoad(indirect_image, from));
+#endif
+}

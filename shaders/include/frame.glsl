@@ -1,0 +1,60 @@
+// What every pass knows of the frame: camera, size, and the surfaces (depth and normal) of camera space.
+// Camera space: x right, y down, z forward, the eye at the origin (src/gbuffer/camera.h).
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(location = 0) uniform ivec4 tile; // x0 y0 x1 y1, end exclusive
+
+layout(std140, binding = 0) uniform Frame {
+    vec4 lens;          // fx fy cx cy: focal length and principal point in pixels (orthographic: pixels per scene unit)
+    ivec4 size;         // width, height, 1 if orthographic, unused
+    vec4 map_from_camera[3]; // rows of the rotation from camera space to the environment map's space
+    vec4 env;           // level count - 1, width, height of the map, 1 if it is constant
+    vec4 sh[9];         // rgb: plain radiance coefficients in map space
+} frame;
+
+layout(r32f, binding = 0) readonly uniform image2D depth_image;
+layout(rgba32f, binding = 1) readonly uniform image2D normal_image;
+
+const float PI = 3.14159265358979;
+const float ULP = 1.1920929e-7; // of 1.0 in float
+
+ivec2 this_pixel() { return tile.xy + ivec2(gl_GlobalInvocationID.xy); }
+bool in_tile(ivec2 p) { return all(lessThan(p, tile.zw)); }
+bool in_frame(ivec2 p) { return all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, frame.size.xy)); }
+bool is_orthographic() { return frame.size.z == 1; }
+
+// Planar depth; 0 where there is no surface or outside the frame.
+float depth_at(ivec2 p) { return in_frame(p) ? imageLoad(depth_image, p).r : 0.0; }
+vec3 normal_at(ivec2 p) { return imageLoad(normal_image, p).xyz; }
+
+// Direction of a screen point's ray with z = 1 (perspective).
+vec3 ray_at(vec2 screen) { return vec3((screen - frame.lens.zw) / frame.lens.xy, 1.0); }
+
+vec3 position_at(vec2 screen, float depth) {
+    vec3 ray = ray_at(screen);
+    return is_orthographic() ? vec3(ray.xy, depth) : ray * depth;
+}
+vec3 position_of(ivec2 p, float depth) { return position_at(vec2(p) + 0.5, depth); }
+
+// Unit vector from the point to the eye.
+vec3 view_of(vec3 point) { return is_orthographic() ? vec3(0.0, 0.0, -1.0) : -normalize(point); }
+
+// Where a point appears on the screen, in pixels. Only for points in front of the eye.
+vec2 screen_of(vec3 point) {
+    vec2 scaled = is_orthographic() ? point.xy : point.xy / point.z;
+    return scaled * frame.lens.xy + frame.lens.zw;
+}
+bool in_front(vec3 point) { return is_orthographic() || point.z > 0.0; }
+
+// Size of a pixel at a depth, in scene units: a surface facing the eye at that depth covers this much per pixel.
+float footprint(float depth) {
+    float per_pixel = 1.0 / min(frame.lens.x, frame.lens.y);
+    return is_orthographic() ? per_pixel : per_pixel * depth;
+}
+// The largest error float rounding can put on the coordinates of a point.
+float rounding(vec3 point) { return 4.0 * ULP * max(max(abs(point.x), abs(point.y)), abs(point.z)); }
+
+vec3 to_map(vec3 direction) {
+    return vec3(dot(frame.map_from_camera[0].xyz, direction), dot(frame.map_from_camera[1].xyz, direction),
+                dot(frame.map_from_camera[2].xyz, direction));
+}

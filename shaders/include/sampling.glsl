@@ -1,0 +1,26 @@
+// Directions, tangent frames and the per-pixel numbers that turn a fixed pattern into noise a filter can remove.
+
+// Interleaved gradient noise (Jimenez 2014): the three constants are the published ones. 0..1.
+float interleaved_gradient_noise(vec2 pixel) {
+    return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715))));
+}
+
+// A second number per pixel, unrelated to the first: the integer hash of Jarzynski and Olano 2020 ("pcg2d").
+vec2 pixel_hash(uvec2 v) {
+    v = v * 1664525u + 1013904223u;
+    v.x += v.y * 1664525u;
+    v.y += v.x * 1664525u;
+    v ^= v >> 16u;
+    v.x += v.y * 1664525u;
+    v.y += v.x * 1664525u;
+    v ^= v >> 16u;
+    return vec2(v >> 8u) * (1.0 / 16777216.0);
+}
+
+// Orthonormal tangent and bitangent of a unit vector without a fixed up vector (Duff et al. 2017, JCGT 6/1).
+mat3 tangent_frame(vec3 n) {
+    float s = n.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (s + n.z);
+    float b = n.x * n.y * a;
+    return mat3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
+}

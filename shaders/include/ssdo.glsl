@@ -1,0 +1,55 @@
+// The sample set and the point test of screen-space directional occlusion (Ritschel, Grosch, Seidel 2009; chapter 5 of the seeds),
+// shared by the direct pass and the bounce so that both see the same blocked samples.
+
+layout(std140, binding = 1) uniform Params {
+    float radius;    // R, scene units
+    float thickness; // scene units; huge = infinite
+    int samples;     // N directions, one point each
+    int seed;
+    float level;     // environment level; negative: by solid angle
+    float strength;  // of the bounce
+    int exitant;     // senders hold exitant radiance (a beauty), not light before albedo
+    int unused;
+} params;
+
+struct Sample {
+    vec3 direction; // unit, camera space
+    float cosine;   // with the receiver's normal, > 0
+    bool blocked;
+    ivec2 sender;   // the pixel that blocks
+};
+
+// Depth, on the ray of `point`, of the surface recorded at pixel q, which is its tangent plane. Taking the pixel centre's depth
+// instead would let every tilted plane shadow itself. A plane so steep that it doubles its depth within the pixel, or ends there,
+// is no evidence: the depth returned is then beyond everything.
+float recorded_depth(ivec2 q, float depth, vec3 point, vec2 screen) {
+    const float NOWHERE = 1e30;
+    vec3 n = normal_at(q), centre = position_of(q, depth);
+    if (is_orthographic()) return abs(n.z) > 1e-4 ? depth + dot(n.xy, centre.xy - point.xy) / n.z : NOWHERE;
+    float ratio = dot(n, ray_at(vec2(q) + 0.5)) / dot(n, ray_at(screen)); // of the depth on this ray to that at the centre
+    return ratio > 0.5 && ratio < 2.0 ? depth * ratio : NOWHERE;
+}
+
+// Direction i of N, cosines stratified: uniform in solid angle (THEORY.md 1.3); distance lambda in (0, R], a permutation of
+// the strata of its own so that it does not follow the elevation.
+Sample ssdo_sample(int i, vec3 P, mat3 tangents, vec2 noise) {
+    float n = float(params.samples);
+    Sample s;
+    s.cosine = 1.0 - (float(i) + 0.5) / n;
+    float sine = sqrt(1.0 - s.cosine * s.cosine);
+    float theta = 2.0 * PI * (float(i) * 0.61803399 + noise.x);
+    s.direction = tangents * vec3(sine * cos(theta), sine * sin(theta), s.cosine);
+    float lambda = params.radius * (1.0 - fract(float(i) * 0.75487767 + noise.y));
+    vec3 point = P + lambda * s.direction;
+    s.blocked = false;
+    s.sender = ivec2(-1);
+    if (!in_front(point)) return s;
+    vec2 screen = screen_of(point);
+    ivec2 q = ivec2(floor(screen));
+    float depth = depth_at(q);
+    if (depth == 0.0) return s; // no surface recorded there, or outside the frame: open
+    float behind = point.z - recorded_depth(q, depth, point, screen);
+    s.blocked = behind > 8.0 * rounding(point) && behind <= params.thickness;
+    s.sender = q;
+    return s;
+}

@@ -1,0 +1,18 @@
+#version 450 core
+// The looks of chapter 4 on a filtered scalar: A = max(0, 1 - scale S)^contrast, S the blocked share or the obscurance. They come
+// after the filter, which acts on linear quantities (THEORY.md 1.9). Scale and contrast 1 only bound the value.
+#include "include/frame.glsl"
+
+layout(std140, binding = 1) uniform Params {
+    float scale;
+    float contrast;
+} params;
+layout(r32f, binding = 2) uniform image2D scalar_image;
+
+void main() {
+    ivec2 p = this_pixel();
+    if (!in_tile(p)) return;
+    float S = 1.0 - imageLoad(scalar_image, p).r;
+    float a = clamp(1.0 - params.scale * S, 0.0, 1.0);
+    imageStore(scalar_image, p, vec4(params.contrast == 1.0 || a == 0.0 ? a : pow(a, params.contrast)));
+}

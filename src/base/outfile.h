@@ -1,0 +1,31 @@
+// A file that appears whole or not at all.
+//
+// The bytes go to a temporary file in the target's folder, named after host, process and a random number, so that two machines
+// that write into one shared folder never meet. Commit flushes it to disk and renames it onto the target; abort removes it and
+// leaves an older target as it was. A target that is a symbolic link keeps being one: what it points at is replaced.
+#ifndef SSDO_BASE_OUTFILE_H
+#define SSDO_BASE_OUTFILE_H
+
+#include <stdbool.h>
+
+#include "base/error.h"
+
+typedef struct outfile {
+    int fd;       // open for reading and writing while the file is being made, otherwise -1
+    char *temp;   // path of the temporary file, owned
+    char *target; // path that commit renames it to, owned
+} outfile;
+
+#define OUTFILE_NONE ((outfile){.fd = -1})
+
+// Creates the temporary file. A folder that is missing or cannot be written to is ERR_OUTPUT naming the folder; so is a target
+// that is not a regular file.
+bool outfile_begin(const char *path, outfile *out, error *e);
+
+// Flush, close, rename. On failure the temporary file is removed. *out is spent either way.
+bool outfile_commit(outfile *out, error *e);
+
+// Closes and removes the temporary file. Harmless on OUTFILE_NONE and on a spent outfile.
+void outfile_abort(outfile *out);
+
+#endif

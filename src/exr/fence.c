@@ -1,0 +1,200 @@
+// The format: OpenEXR File Layout, https://openexr.com/en/latest/OpenEXRFileLayout.html
+#include <errno.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "exr/internal.h"
+
+enum {
+    MAGIC = 20000630,
+    VERSION_MASK = 0xff,
+    FLAG_TILED = 0x200,
+    FLAG_LONG_NAMES = 0x400,
+    FLAG_DEEP = 0x800,
+    FLAG_MULTIPART = 0x1000,
+    FLAGS_KNOWN = FLAG_TILED | FLAG_LONG_NAMES | FLAG_DEEP | FLAG_MULTIPART,
+};
+
+typedef struct walker {
+    FILE *f;
+    const char *path;
+    uint64_t size, at;
+    error *e;
+} walker;
+
+typedef struct attribute {
+    char name[EXR_MAX_NAME + 1], type[EXR_MAX_NAME + 1];
+    uint32_t size;
+} attribute;
+
+// Attribute types of a fixed size. The library gives up in the middle of one that lies and reads on from the wrong place.
+static const struct {
+    const char *type;
+    uint32_t size;
+} fixed_sizes[] = {
+    {"box2f", 16},   {"box2i", 16},   {"chromaticities", 32}, {"compression", 1}, {"double", 8}, {"envmap", 1}, {"float", 4},
+    {"int", 4},      {"keycode", 28}, {"lineOrder", 1},       {"m33d", 72},       {"m33f", 36},  {"m44d", 128}, {"m44f", 64},
+    {"rational", 8}, {"tiledesc", 9}, {"timecode", 8},        {"v2d", 16},        {"v2f", 8},    {"v2i", 8},    {"v3d", 24},
+    {"v3f", 12},     {"v3i", 12},
+};
+
+// Attributes without which the library would make up a value, or fail.
+static const struct {
+    const char *name, *type;
+} required[] = {
+    {"channels", "chlist"},
+    {"compression", "compression"},
+    {"dataWindow", "box2i"},
+    {"displayWindow", "box2i"},
+};
+enum { REQUIRED = sizeof required / sizeof *required };
+
+static bool fail(walker *w, const char *what)
+{
+    return err_set(w->e, ERR_INPUT, w->path, NULL, "%s; render it or copy it again", what);
+}
+
+static bool take(walker *w, void *to, size_t n)
+{
+    if (w->size - w->at < n || fread(to, 1, n, w->f) != n) return fail(w, "is truncated: its header ends early");
+    w->at += n;
+    return true;
+}
+
+static bool take_int(walker *w, uint32_t *v)
+{
+    uint8_t b[4];
+    if (!take(w, b, sizeof b)) return false;
+    *v = (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+    return true;
+}
+
+static bool take_name(walker *w, char name[EXR_MAX_NAME + 1])
+{
+    for (int i = 0; i <= EXR_MAX_NAME; i++) {
+        if (!take(w, &name[i], 1)) return false;
+        if (!name[i]) return true;
+    }
+    return fail(w, "is damaged: its header holds a name of more than 255 bytes");
+}
+
+static bool skip(walker *w, uint64_t n)
+{
+    if (w->size - w->at < n) return fail(w, "is truncated: its header ends early");
+    if (fseeko(w->f, (off_t)n, SEEK_CUR) != 0) return fail(w, "cannot be read to the end of its header");
+    w->at += n;
+    return true;
+}
+
+// A chlist: name, pixel type, flags, x and y sampling, ..., an empty name.
+static bool check_channels(walker *w, uint32_t size)
+{
+    uint64_t end = w->at + size;
+    char name[EXR_MAX_NAME + 1];
+    uint8_t rest[16];
+    for (int i = 0; w->at < end; i++) {
+        if (!take_name(w, name)) return false;
+        if (!name[0]) break;
+        if (i >= EXR_MAX_CHANNELS)
+            return err_set(w->e, ERR_INPUT, w->path, NULL, "has more than %d channels in one part; split it", EXR_MAX_CHANNELS);
+        if (!take(w, rest, sizeof rest)) return false;
+    }
+    return w->at == end || fail(w, "is damaged: its channel list does not have the size it claims");
+}
+
+static bool check_size(walker *w, const attribute *a)
+{
+    for (size_t i = 0; i < sizeof fixed_sizes / sizeof *fixed_sizes; i++)
+        if (strcmp(a->type, fixed_sizes[i].type) == 0 && a->size != fixed_sizes[i].size) {
+            return err_set(w->e, ERR_INPUT, w->path, NULL,
+                           "is damaged: its attribute '%s' of type '%s' has %u bytes; render it or copy it again", a->name,
+                           a->type, a->size);
+        }
+    if (a->size > INT32_MAX || a->size > w->size - w->at) return fail(w, "is truncated: an attribute reaches beyond its end");
+    return true;
+}
+
+static bool refuse_deep(walker *w)
+{
+    return err_set(w->e, ERR_INPUT, w->path, NULL, "holds deep data, which is not supported; flatten it first");
+}
+
+// One attribute after its name was read. `seen` has a bit for each required one.
+static bool check_attribute(walker *w, attribute *a, unsigned *seen)
+{
+    if (!take_name(w, a->type) || !take_int(w, &a->size) || !check_size(w, a)) return false;
+    for (unsigned i = 0; i < REQUIRED; i++) {
+        if (strcmp(a->name, required[i].name) != 0) continue;
+        if (strcmp(a->type, required[i].type) != 0 || (*seen & 1u << i))
+            return fail(w, "is damaged: a required attribute is repeated or has the wrong type");
+        *seen |= 1u << i;
+    }
+    if (strcmp(a->type, "chlist") == 0) return check_channels(w, a->size);
+    char deep[4];
+    if (strcmp(a->name, "type") != 0 || a->size < sizeof deep) return skip(w, a->size);
+    if (!take(w, deep, sizeof deep)) return false;
+    return memcmp(deep, "deep", sizeof deep) == 0 ? refuse_deep(w) : skip(w, a->size - sizeof deep);
+}
+
+// Attributes up to the empty name that ends a part. *empty: there were none, which ends the list of parts.
+static bool check_part(walker *w, bool *empty)
+{
+    unsigned seen = 0;
+    for (int count = 0;; count++) {
+        attribute a;
+        if (!take_name(w, a.name)) return false;
+        *empty = count == 0;
+        if (!a.name[0]) break;
+        if (count >= EXR_MAX_ATTRIBUTES) return fail(w, "is damaged: a part has more attributes than any program writes");
+        if (!check_attribute(w, &a, &seen)) return false;
+    }
+    for (unsigned i = 0; !*empty && i < REQUIRED; i++)
+        if (!(seen & 1u << i))
+            return err_set(w->e, ERR_INPUT, w->path, NULL,
+                           "is damaged: the required attribute '%s' is missing; render it or copy it again", required[i].name);
+    return true;
+}
+
+static bool check_parts(walker *w, uint32_t flags)
+{
+    bool empty;
+    if (!(flags & FLAG_MULTIPART)) return check_part(w, &empty) && (!empty || fail(w, "is damaged: its header is empty"));
+    for (int count = 0; count <= EXR_MAX_PARTS; count++) {
+        if (!check_part(w, &empty)) return false;
+        if (empty) return count > 0 || fail(w, "is damaged: it has no parts");
+    }
+    return err_set(w->e, ERR_INPUT, w->path, NULL, "has more than %d parts; split it", EXR_MAX_PARTS);
+}
+
+static bool check_stream(walker *w)
+{
+    uint32_t magic = 0, version = 0;
+    if (w->size < 8 || !take_int(w, &magic) || !take_int(w, &version) || magic != MAGIC)
+        return err_set(w->e, ERR_INPUT, w->path, NULL, "is not an OpenEXR file");
+    uint32_t flags = version & ~(uint32_t)VERSION_MASK;
+    if ((version & VERSION_MASK) != 2 || (flags & ~(uint32_t)FLAGS_KNOWN))
+        return err_set(w->e, ERR_INPUT, w->path, NULL, "is an OpenEXR file of an unknown version; save it as version 2");
+    if (flags & FLAG_DEEP) return refuse_deep(w);
+    return check_parts(w, flags);
+}
+
+bool exr_check_header(const char *path, error *e)
+{
+    struct stat st;
+    walker w = {.path = path, .e = e};
+    w.f = fopen(path, "rbe");
+    if (!w.f)
+        return err_set(e, ERR_INPUT, path, NULL, errno == ENOENT ? "does not exist; check the name" : "cannot be opened: %s",
+                       strerror(errno));
+    bool ok;
+    if (fstat(fileno(w.f), &st) != 0 || !S_ISREG(st.st_mode)) {
+        ok = err_set(e, ERR_INPUT, path, NULL, "is not a regular file; name an OpenEXR file");
+    } else {
+        w.size = (uint64_t)st.st_size;
+        ok = check_stream(&w);
+    }
+    fclose(w.f);
+    return ok;
+}

@@ -1,0 +1,62 @@
+// What the files of this room share; nothing outside src/exr includes it.
+#ifndef SSDO_EXR_INTERNAL_H
+#define SSDO_EXR_INTERNAL_H
+
+#include <pthread.h>
+
+#include <OpenEXR/openexr.h>
+
+#include "exr/file.h"
+#include "exr/write.h"
+
+// Limits of what is read. They bound memory for hostile headers and keep every product below 2^63 (the library multiplies some
+// of these as int).
+enum {
+    EXR_MAX_SIDE = 65536,         // pixels, data window and tiles
+    EXR_MAX_PIXELS = 1 << 28,     // 16384 x 16384, more than one GL texture holds
+    EXR_MAX_CHANNELS = 1024,      // of one part
+    EXR_MAX_NAME = 255,           // bytes, the format's own limit for long names
+    EXR_SHORT_NAME = 31,          // longer ones need a flag in the file's version field
+    EXR_MAX_PARTS = 1024,         //
+    EXR_MAX_ATTRIBUTES = 4096,    // of one part
+    EXR_MAX_CHUNK_BYTES = 1 << 30 // unpacked
+};
+
+// Keeps the library's first message while armed, instead of letting it print. The library calls from any thread.
+typedef struct core_log {
+    pthread_mutex_t lock;
+    bool armed;
+    char text[256];
+} core_log;
+
+// What exr_file_open allocates; the public part comes first.
+typedef struct exr_reader {
+    exr_file file;
+    core_log log;
+} exr_reader;
+
+void core_log_arm(core_log *log);
+// Stops listening and reports `code`: an allocation failure as ERR_MEMORY, anything else as `kind` with `what` in front of the
+// library's own words. Returns false.
+bool core_log_report(core_log *log, exr_result_t code, error_code kind, const char *path, const char *what, error *e);
+
+// Walks the headers of a file without the library: a readable regular file, the magic number, version and flags, every name and
+// size within its bounds and the file, the required attributes there and of their type, no deep part. Fills e and returns false
+// otherwise. What passes cannot lead the library's parser astray.
+bool exr_check_header(const char *path, error *e);
+
+// True for attributes that say how pixels are stored: they are the writer's and never copied.
+bool exr_attr_structural(const char *name);
+
+// Declares in part `part` of `to` a copy of every attribute of part `from_part` that is not structural and not in `ours`.
+// The values are borrowed: `from` must stay open until `to` is finished.
+exr_result_t exr_attr_copy_all(exr_context_t to, int part, const exr_file *from, int from_part, const exr_out_attr *ours,
+                               int our_count);
+
+// Checks what exr_write was given: names, windows, compression. ERR_OUTPUT names the part or channel that cannot be written.
+bool exr_check_parts(const char *path, const exr_out_part *parts, int count, error *e);
+
+// Declares all parts with their channels and attributes in a context opened for writing, and writes the header.
+exr_result_t exr_put_header(exr_context_t core, const exr_out_part *parts, int count);
+
+#endif

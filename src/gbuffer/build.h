@@ -1,0 +1,126 @@
+// What the steps of gbuffer_build share. Internal to the room.
+#ifndef SSDO_GBUFFER_BUILD_H
+#define SSDO_GBUFFER_BUILD_H
+
+#include <stdint.h>
+
+#include "base/half.h"
+#include "gbuffer/conventions.h"
+#include "gbuffer/gbuffer.h"
+
+// One channel seen from the frame's data window. data NULL: absent.
+typedef struct plane {
+    const void *data;
+    sample_type type;
+    int width, height; // of the channel's own part
+    int dx, dy;        // frame pixel (x, y) is the part's (x + dx, y + dy)
+} plane;
+
+// NaN outside the part's window.
+static inline double plane_get(const plane *p, int x, int y)
+{
+    x += p->dx, y += p->dy;
+    if (x < 0 || y < 0 || x >= p->width || y >= p->height) return (double)NAN;
+    size_t i = (size_t)y * (size_t)p->width + (size_t)x;
+    if (p->type == SAMPLE_FLOAT) return (double)((const float *)p->data)[i];
+    if (p->type == SAMPLE_HALF) return (double)half_to_float(((const uint16_t *)p->data)[i]);
+    return (double)((const uint32_t *)p->data)[i];
+}
+
+typedef enum surface {
+    SURFACE_NONE,
+    SURFACE_YES,
+    SURFACE_ORIGIN, // P is exactly (0, 0, 0) with a valid depth: decided when the camera is known
+} surface;
+
+typedef struct build {
+    const exr_file *file;
+    const resolution *r;
+    const gbuffer_options *options;
+    const convention *row;
+    gbuffer *g;
+    log_t *log;
+    error *e;
+
+    plane position[3], normal[3], depth, alpha;
+    bool has_position, has_normal, has_depth; // present and believed
+    uint8_t *surface;                         // a `surface` per pixel
+    float *raw;                               // depth as P (or Z) says, before it is moved onto the pixel's ray; 0 none
+
+    camera_point *points; // a sample of the surfaces, spread over the frame, with their Z (NaN without)
+    double *point_depth;
+    size_t point_count;
+    size_t candidates; // surface pixels found by classification
+
+    bool has_pose;       // camera->world_from_camera takes P's space to camera space
+    bool depth_measured; // Z is known to be planar or radial depth
+    bool depth_wins;     // z comes from Z
+    double depth_offset; // orthographic: z = Z + offset
+    double far_pixels;   // P further than this from its pixel is not believed
+    bool lateral;        // P is fine enough to tell where in its pixel it was sampled
+
+    space normal_space;
+    bool normal_unorm;
+    double normal_sign_y, normal_sign_z; // camera-space normals: signs that lead to our axes
+} build;
+
+// The channel of a role's component, data NULL when it is absent or was not loaded.
+plane build_plane(const build *b, role r, int component);
+
+// Adds a line to the evidence, and to the log with -v.
+void build_note(build *b, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+// Runs fn for every row of the frame on the options' threads; rows are independent.
+typedef void (*build_row_fn)(build *b, int y);
+void build_rows(build *b, build_row_fn fn);
+
+static inline size_t build_index(const build *b, int x, int y) { return (size_t)y * (size_t)b->g->width + (size_t)x; }
+
+static inline vec3 build_position(const build *b, int x, int y)
+{
+    return v3(plane_get(&b->position[0], x, y), plane_get(&b->position[1], x, y), plane_get(&b->position[2], x, y));
+}
+
+// Direction with z = 1 (perspective) through the centre of the pixel; orthographic: (0, 0, 1).
+static inline vec3 build_ray(const camera *c, int x, int y)
+{
+    if (c->kind == CAMERA_ORTHOGRAPHIC) return v3(0, 0, 1);
+    return v3((x + 0.5 - c->cx) / c->fx, (y + 0.5 - c->cy) / c->fy, 1.0);
+}
+
+// Camera-space position of the pixel's centre at planar depth z.
+static inline vec3 build_point(const camera *c, int x, int y, double z)
+{
+    double s = c->kind == CAMERA_ORTHOGRAPHIC ? 1.0 : z;
+    return v3((x + 0.5 - c->cx) / c->fx * s, (y + 0.5 - c->cy) / c->fy * s, z);
+}
+
+// validity.c: which pixels hold a surface, and the sample of points.
+bool validity_classify(build *b);
+bool validity_sample(build *b);
+
+// choose_camera.c: the camera by flag, fit, header or plane.
+bool choose_camera(build *b);
+
+// measure.c: what Z is, and whether it or P gives the depth; what the normals are.
+void measure_depth(build *b);
+void measure_normals(build *b);
+
+// positions.c: planar depth of every pixel.
+bool positions_raw(build *b);
+void positions_final(build *b);
+
+// normals.c
+// The file's normal at a pixel, unit, in camera space; false where it is zero or not finite.
+bool normals_read(const build *b, int x, int y, vec3 *n);
+// |N| as stored (for coverage); 0 when absent or not finite.
+double normals_length(const build *b, int x, int y);
+// The normal of the surface through the neighbours' depths, facing the eye.
+vec3 normals_from_depth(const build *b, const float *depth, int x, int y);
+void normals_make(build *b);
+
+// coverage.c, colours.c
+bool coverage_make(build *b);
+bool colours_make(build *b);
+
+#endif

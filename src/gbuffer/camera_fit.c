@@ -1,0 +1,274 @@
+// The camera from world positions and the pixels they were seen at.
+//
+// Order of work, once for each camera kind: a linear fit of all points, reweighted by its own residuals; if that leaves too few
+// points explained, random minimal subsets (RANSAC with the truncated squared error as its score, Torr and Zisserman 2000); then
+// Levenberg-Marquardt on the points within a few standard deviations.
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "gbuffer/camera_solve.h"
+#include "gbuffer/solve.h"
+
+enum {
+    LEAST_POINTS = 12,
+    SCORED = 512,      // points that score a hypothesis
+    TRIALS = 800,      // for 6 points and half of them bad, 800 draws miss with probability 3e-6
+    REWEIGHTINGS = 15, // of the linear fit
+};
+static const double near_pixels = 2.0;   // a point within this of its place counts as explained while searching
+static const double least_sigma = 0.01;  // pixels: keeps float rounding from being taken for an outlier
+static const double worst_spread = 0.01; // relative standard deviation of the focal length beyond which it counts as unknown
+static const double tie = 1.005;         // an orthographic camera whose error is this close to the perspective one is preferred
+
+typedef struct problem {
+    camera_point *points; // shifted and scaled
+    size_t count;
+    vec3 centre;
+    double size;
+    double *weights, *errors; // scratch, count each
+} problem;
+
+typedef struct solution {
+    bool good;
+    camera camera;
+    double median; // pixels, over all points
+    double spread; // relative standard deviation of fx
+} solution;
+
+static void errors_of(const problem *k, const projection *p)
+{
+    for (size_t i = 0; i < k->count; i++) k->errors[i] = projection_error(p, &k->points[i]);
+}
+
+static double share_explained(const problem *k)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < k->count; i++) n += k->errors[i] < near_pixels;
+    return (double)n / (double)k->count;
+}
+
+static double median_error(const problem *k, double *scratch)
+{
+    for (size_t i = 0; i < k->count; i++) scratch[i] = k->errors[i];
+    return solve_median(scratch, k->count);
+}
+
+// Geman-McClure weights with the scale following the median down: a redescending estimator that ends blind to outliers.
+static bool reweight(const problem *k, projection *p)
+{
+    for (int i = 0; i < REWEIGHTINGS; i++) {
+        errors_of(k, p);
+        double scale = fmax(2.0 * median_error(k, k->weights), 2.0 * least_sigma);
+        for (size_t j = 0; j < k->count; j++) {
+            double r = k->errors[j] / scale, w = 1.0 / (1.0 + r * r);
+            k->weights[j] = w * w;
+        }
+        projection next;
+        if (!projection_fit(p->kind, k->points, k->weights, k->count, p, &next)) return false;
+        *p = next;
+    }
+    errors_of(k, p);
+    return true;
+}
+
+static double score(const problem *k, const projection *p, double limit)
+{
+    size_t stride = k->count / SCORED + 1;
+    double sum = 0.0;
+    for (size_t i = 0; i < k->count; i += stride) {
+        double r = projection_error(p, &k->points[i]);
+        sum += fmin(r * r, limit * limit);
+    }
+    return sum;
+}
+
+static bool search(const problem *k, camera_kind kind, double limit, projection *best)
+{
+    const size_t minimal = kind == CAMERA_PERSPECTIVE ? 6 : 4;
+    uint64_t random = 1;
+    double least = INFINITY;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        camera_point picked[6];
+        for (size_t i = 0; i < minimal; i++) picked[i] = k->points[solve_random(&random) % k->count];
+        projection p;
+        if (!projection_fit(kind, picked, NULL, minimal, NULL, &p)) continue;
+        double s = score(k, &p, limit);
+        if (s < least) least = s, *best = p;
+    }
+    return isfinite(least);
+}
+
+// The linear stage. The errors of the result are left in k->errors.
+static bool linear_stage(const problem *k, camera_kind kind, projection *out)
+{
+    bool have = projection_fit(kind, k->points, NULL, k->count, NULL, out) && reweight(k, out);
+    double share = have ? share_explained(k) : 0.0;
+    for (int attempt = 0; attempt < 2 && share < 0.65; attempt++) {
+        projection p;
+        if (!search(k, kind, attempt == 0 ? near_pixels : 5.0 * near_pixels, &p) || !reweight(k, &p)) continue;
+        double found = share_explained(k);
+        if (!have || found > share) *out = p, share = found, have = true;
+    }
+    if (have) errors_of(k, out);
+    return have;
+}
+
+static void camera_errors(const problem *k, const camera *c)
+{
+    for (size_t i = 0; i < k->count; i++) k->errors[i] = camera_point_error(c, &k->points[i]);
+}
+
+// Sets k->weights to 1 for points within 3.5 standard deviations; returns the standard deviation (per axis, from the median,
+// whose ratio to it is 1.1774 for a two-dimensional normal distribution).
+static double choose_inliers(const problem *k)
+{
+    double sigma = fmax(median_error(k, k->weights) / 1.1774, least_sigma);
+    for (size_t i = 0; i < k->count; i++) k->weights[i] = k->errors[i] < 3.5 * sigma ? 1.0 : 0.0;
+    return sigma;
+}
+
+static solution solve(const problem *k, camera_kind kind)
+{
+    solution s = {.median = INFINITY, .spread = INFINITY};
+    projection p;
+    if (!linear_stage(k, kind, &p) || !projection_to_camera(&p, &s.camera)) return s;
+    unsigned all = FREE_FX | FREE_FY | FREE_CENTRE | FREE_POSE;
+    double sigma = least_sigma;
+    for (int round = 0; round < 3; round++) {
+        camera_errors(k, &s.camera);
+        sigma = choose_inliers(k);
+        double spread;
+        if (!camera_refine(&s.camera, k->points, NULL, k->weights, k->count, all, &spread)) return s;
+        s.spread = spread * sigma;
+    }
+    camera_errors(k, &s.camera);
+    s.median = median_error(k, k->weights);
+    s.good = isfinite(s.median) && s.median < 1e29;
+    return s;
+}
+
+// Root mean square of the nearest 80 % of both cameras' errors on the same points: those explained best by `reference`.
+static double compare_rms(const problem *k, const camera *reference, const camera *c)
+{
+    camera_errors(k, reference);
+    double limit;
+    for (size_t i = 0; i < k->count; i++) k->weights[i] = k->errors[i];
+    limit = solve_select(k->weights, k->count, k->count * 4 / 5);
+    limit = fmin(limit, 10.0 * fmax(median_error(k, k->weights), least_sigma));
+    double sum = 0.0;
+    size_t n = 0;
+    for (size_t i = 0; i < k->count; i++) {
+        if (k->errors[i] > limit) continue;
+        double r = camera_point_error(c, &k->points[i]);
+        sum += r * r;
+        n++;
+    }
+    return n ? sqrt(sum / (double)n) : INFINITY;
+}
+
+static bool choose(const problem *k, const solution *perspective, const solution *orthographic, const solution **out)
+{
+    bool p = perspective->good, o = orthographic->good && orthographic->spread < worst_spread;
+    if (p && o) {
+        double rp = compare_rms(k, &perspective->camera, &perspective->camera);
+        double ro = compare_rms(k, &perspective->camera, &orthographic->camera);
+        if (ro <= tie * rp + 1e-3)
+            p = false;
+        else
+            o = false;
+    }
+    *out = o ? orthographic : perspective;
+    return (p || o) && (*out)->spread < worst_spread;
+}
+
+// From the shifted, scaled points back to the world.
+static void to_world(const problem *k, camera *c)
+{
+    c->origin = v3_add(v3_scale(c->origin, k->size), k->centre);
+    if (c->kind == CAMERA_ORTHOGRAPHIC) c->fx /= k->size, c->fy /= k->size;
+}
+
+// An orthographic camera's centre is free: the pixels' mean, with the origin moved across to match, then back.
+static void settle_orthographic(const camera_point *points, size_t count, camera *c)
+{
+    double x = 0.0, y = 0.0, low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < count; i++) x += points[i].x / (double)count, y += points[i].y / (double)count;
+    vec3 across = v3((x - c->cx) / c->fx, (y - c->cy) / c->fy, 0.0);
+    c->origin = v3_add(c->origin, m3_apply(c->world_from_camera, across));
+    c->cx = x, c->cy = y;
+    for (size_t i = 0; i < count; i++) {
+        if (!v3_finite(points[i].world) || camera_point_error(c, &points[i]) > 10.0) continue;
+        double z = camera_from_world(c, points[i].world).z;
+        low = fmin(low, z), high = fmax(high, z);
+    }
+    if (low <= high) camera_move_back(c, low, high);
+}
+
+static bool prepare(const camera_point *points, size_t count, problem *k, error *e)
+{
+    k->points = mem_pixels(count + 1, sizeof *k->points, e);
+    k->weights = mem_pixels(count + 1, sizeof *k->weights, e);
+    k->errors = mem_pixels(count + 1, sizeof *k->errors, e);
+    if (!k->points || !k->weights || !k->errors) return false;
+    for (size_t i = 0; i < count; i++)
+        if (v3_finite(points[i].world) && isfinite(points[i].x + points[i].y)) k->points[k->count++] = points[i];
+    double *axis[3] = {&k->centre.x, &k->centre.y, &k->centre.z};
+    for (int a = 0; a < 3; a++) {
+        for (size_t i = 0; i < k->count; i++) {
+            vec3 w = k->points[i].world;
+            k->errors[i] = a == 0 ? w.x : a == 1 ? w.y : w.z;
+        }
+        *axis[a] = solve_median(k->errors, k->count);
+    }
+    for (size_t i = 0; i < k->count; i++) k->errors[i] = v3_length(v3_sub(k->points[i].world, k->centre));
+    k->size = solve_median(k->errors, k->count);
+    if (!(k->size > 0.0)) k->size = 1.0;
+    for (size_t i = 0; i < k->count; i++) k->points[i].world = v3_scale(v3_sub(k->points[i].world, k->centre), 1.0 / k->size);
+    return true;
+}
+
+// Beyond this median error the positions and the pixels have nothing to do with each other.
+static double worst_median(const problem *k)
+{
+    double x0 = INFINITY, x1 = -INFINITY, y0 = INFINITY, y1 = -INFINITY;
+    for (size_t i = 0; i < k->count; i++) {
+        x0 = fmin(x0, k->points[i].x), x1 = fmax(x1, k->points[i].x);
+        y0 = fmin(y0, k->points[i].y), y1 = fmax(y1, k->points[i].y);
+    }
+    return fmax(1.0, 0.01 * hypot(x1 - x0, y1 - y0));
+}
+
+bool camera_fit(const camera_point *points, size_t count, camera *out, error *e)
+{
+    static const char remedy[] = "give the camera with --fov, --ortho or --camera";
+    problem k = {.count = 0};
+    bool done = false;
+    if (!prepare(points, count, &k, e)) goto out;
+    if (k.count < LEAST_POINTS) {
+        err_set(e, ERR_INPUT, NULL, NULL, "only %zu usable positions, too few to find the camera from (%d needed); %s", k.count,
+                LEAST_POINTS, remedy);
+        goto out;
+    }
+    solution perspective = solve(&k, CAMERA_PERSPECTIVE), orthographic = solve(&k, CAMERA_ORTHOGRAPHIC);
+    const solution *best;
+    if (!choose(&k, &perspective, &orthographic, &best)) {
+        err_set(e, ERR_INPUT, NULL, NULL,
+                "the positions do not determine the camera (all of the visible surface may lie on one plane); %s", remedy);
+        goto out;
+    }
+    if (!(best->median < worst_median(&k))) {
+        err_set(e, ERR_INPUT, NULL, NULL, "no camera explains the positions (median error %.3g pixels); %s", best->median,
+                remedy);
+        goto out;
+    }
+    *out = best->camera;
+    to_world(&k, out);
+    if (out->kind == CAMERA_ORTHOGRAPHIC) settle_orthographic(points, count, out);
+    camera_residual(out, points, count, &out->residual, &out->inliers);
+    done = true;
+out:
+    free(k.points);
+    free(k.weights);
+    free(k.errors);
+    return done;
+}

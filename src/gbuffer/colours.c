@@ -1,0 +1,69 @@
+// The colour layers as finite floats.
+#include "base/mem.h"
+#include "base/threads.h"
+#include "gbuffer/build.h"
+
+static const float most = 1e30f;
+
+typedef struct job {
+    plane from[4];
+    float fill[4];
+    int components; // of `to`
+    bool unit;      // clamp to 0..1
+    float *to;
+    int width;
+} job;
+
+static float tamed(double v, bool unit)
+{
+    if (isnan(v)) return 0.0f;
+    if (unit) return (float)fmin(fmax(v, 0.0), 1.0);
+    if (v == -INFINITY) return 0.0f;
+    return (float)fmin(fmax(v, -(double)most), (double)most);
+}
+
+static bool convert_row(void *context, size_t row, int worker)
+{
+    (void)worker;
+    const job *j = context;
+    for (int x = 0; x < j->width; x++)
+        for (int c = 0; c < j->components; c++) {
+            float *to = &j->to[((size_t)row * (size_t)j->width + (size_t)x) * (size_t)j->components + (size_t)c];
+            *to = j->from[c].data ? tamed(plane_get(&j->from[c], x, (int)row), j->unit) : j->fill[c];
+        }
+    return true;
+}
+
+static bool convert(build *b, job *j, float **out)
+{
+    j->width = b->g->width;
+    j->to = *out = mem_pixels((size_t)b->g->width * (size_t)b->g->height * (size_t)j->components, sizeof **out, b->e);
+    return *out && threads_for(b->options->threads, (size_t)b->g->height, convert_row, j);
+}
+
+static bool colour(build *b, unsigned need, role r, float **out)
+{
+    if (!(b->options->need & need) || b->r->components[r] == 0) return true;
+    job j = {.components = 4};
+    for (int c = 0; c < 3; c++) j.from[c] = build_plane(b, r, c);
+    if (r == ROLE_BEAUTY) j.from[3] = build_plane(b, ROLE_ALPHA, 0), j.fill[3] = 1.0f;
+    return convert(b, &j, out);
+}
+
+static bool material(build *b)
+{
+    if (!(b->options->need & NEED_MATERIAL) || b->r->components[ROLE_ROUGHNESS] == 0) return true;
+    job j = {.components = 2, .unit = true};
+    j.from[0] = build_plane(b, ROLE_ROUGHNESS, 0), j.from[1] = build_plane(b, ROLE_METALLIC, 0);
+    return convert(b, &j, &b->g->material);
+}
+
+bool colours_make(build *b)
+{
+    gbuffer *g = b->g;
+    g->has_alpha = b->r->components[ROLE_ALPHA] > 0;
+    g->has_diffuse_indirect = b->r->components[ROLE_DIFFUSE_INDIRECT] > 0;
+    return colour(b, NEED_ALBEDO, ROLE_ALBEDO, &g->albedo) && colour(b, NEED_BEAUTY, ROLE_BEAUTY, &g->beauty) &&
+           colour(b, NEED_EMISSION, ROLE_EMISSION, &g->emission) &&
+           colour(b, NEED_DIFFUSE_LIGHT, ROLE_DIFFUSE_DIRECT, &g->diffuse_direct) && material(b);
+}

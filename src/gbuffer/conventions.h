@@ -1,0 +1,45 @@
+// What renderers call their channels and what they mean by them: one row a renderer. Everything a row says about meaning is a
+// first guess, which measurement (positions.c, normals.c) may overrule and an option always does.
+//
+// A pattern is matched without regard to case against a channel group, that is a layer with its components:
+//   "Position"   a layer of that name, or one that ends in ".Position": what stands before it is the view layer. The layer's name
+//                is the channel's name up to its last dot, preceded by the part's name in a multi-part file. Components are
+//                XYZ, RGB or red green blue for three; one of V Z X R Y T, red or nothing for one.
+//   "depth/Z"    the same, and only this component.
+//   "/"          the unnamed layer, whose channels have no dot (R, G, B, A); "/Z" its channel Z.
+// Earlier patterns of a role are preferred. Of the rows, one whose header mark is present wins; else the one that recognises most
+// roles (exact case counts a little more), the plain row winning ties. Roles the row does not find are looked for with the plain
+// row's patterns.
+#ifndef SSDO_GBUFFER_CONVENTIONS_H
+#define SSDO_GBUFFER_CONVENTIONS_H
+
+#include <stdbool.h>
+
+#include "gbuffer/resolve.h"
+
+enum { CONVENTION_PATTERNS = 10, CONVENTION_MARKS = 4 };
+
+typedef enum space { SPACE_UNKNOWN, SPACE_WORLD, SPACE_CAMERA } space;
+typedef enum normal_encoding { NORMAL_SIGNED, NORMAL_UNORM } normal_encoding; // unorm: 0..1, n = 2 v - 1
+
+typedef struct convention {
+    const char *name;
+    const char *marks[CONVENTION_MARKS]; // header attributes that only this renderer writes
+    const char *patterns[ROLE_COUNT][CONVENTION_PATTERNS];
+    const char *diffuse_albedo[4]; // those patterns of ROLE_ALBEDO that name a diffuse albedo; the others are `albedo`
+    albedo_kind albedo;
+    space position_space, normal_space;
+    normal_encoding normal_encoding;
+    bool normals_averaged; // edge pixels hold the average of the normals, so |N| is coverage
+    depth_kind depth;
+    double background_depth;
+    bool up_is_z;
+} convention;
+
+extern const convention conventions[];
+extern const int convention_count;
+
+// The row of a resolution's `convention`; the plain row when there is none of that name.
+const convention *convention_named(const char *name);
+
+#endif

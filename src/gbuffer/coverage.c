@@ -1,0 +1,65 @@
+// Coverage k (DESIGN.md, "Edges"; facts/ecosystem.md 1.3).
+#include "base/mem.h"
+#include "gbuffer/build.h"
+
+static bool alpha_varies(const build *b)
+{
+    bool full = false, partial = false;
+    for (int y = 0; y < b->g->height; y++)
+        for (int x = 0; x < b->g->width; x++) {
+            double a = plane_get(&b->alpha, x, y);
+            full = full || a > 0.5;
+            partial = partial || a < 0.999;
+            if (full && partial) return true;
+        }
+    return false;
+}
+
+static bool near_background(const build *b, int x, int y)
+{
+    for (int v = y - 1; v <= y + 1; v++)
+        for (int u = x - 1; u <= x + 1; u++) {
+            if (u < 0 || v < 0 || u >= b->g->width || v >= b->g->height) continue;
+            if (!(b->g->depth[build_index(b, u, v)] > 0.0f)) return true;
+        }
+    return false;
+}
+
+// Away from the background alpha is the material's (glass), and |N| a bump's: neither is coverage.
+static void coverage_row(build *b, int y)
+{
+    for (int x = 0; x < b->g->width; x++) {
+        size_t i = build_index(b, x, y);
+        bool solid = b->g->depth[i] > 0.0f;
+        double k = solid ? 1.0 : 0.0;
+        if (near_background(b, x, y)) {
+            double stored = k;
+            if (b->alpha.data)
+                stored = plane_get(&b->alpha, x, y);
+            else if (b->has_normal && b->row->normals_averaged && !b->normal_unorm)
+                stored = normals_length(b, x, y);
+            if (isfinite(stored)) k = fmin(fmax(stored, 0.0), 1.0);
+        }
+        b->g->coverage[i] = (float)k;
+        vec3 n;
+        if (solid || !(k > 0.0) || !normals_read(b, x, y, &n)) continue;
+        if (v3_dot(n, v3_normalize(build_ray(&b->g->camera, x, y))) > 0.1) n = v3_scale(n, -1.0);
+        float *out = b->g->normal + 4 * i;
+        out[0] = (float)n.x, out[1] = (float)n.y, out[2] = (float)n.z;
+    }
+}
+
+bool coverage_make(build *b)
+{
+    if (!(b->options->need & NEED_COVERAGE)) return true;
+    b->g->coverage = mem_pixels((size_t)b->g->width * (size_t)b->g->height, sizeof *b->g->coverage, b->e);
+    if (!b->g->coverage) return false;
+    if (b->alpha.data && !alpha_varies(b)) b->alpha.data = NULL;
+    bool from_normals = !b->alpha.data && b->has_normal && b->row->normals_averaged && !b->normal_unorm;
+    build_note(b, "coverage at edges: from %s",
+               b->alpha.data  ? "alpha"
+               : from_normals ? "the length of the normals"
+                              : "depth alone");
+    build_rows(b, coverage_row);
+    return true;
+}

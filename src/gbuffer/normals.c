@@ -1,0 +1,100 @@
+// Unit camera-space normals, from the file or from depth.
+#include "gbuffer/build.h"
+
+// A normal this far (cosine) beyond the silhouette is still a shading normal's doing; further, the surface is seen from its back,
+// unless the surface itself agrees with the normal.
+static const double facing_away = 0.1;
+
+static vec3 stored(const build *b, int x, int y)
+{
+    return v3(plane_get(&b->normal[0], x, y), plane_get(&b->normal[1], x, y), plane_get(&b->normal[2], x, y));
+}
+
+double normals_length(const build *b, int x, int y)
+{
+    vec3 n = b->has_normal && !b->normal_unorm ? stored(b, x, y) : v3(0, 0, 0);
+    return v3_finite(n) ? v3_length(n) : 0.0;
+}
+
+bool normals_read(const build *b, int x, int y, vec3 *n)
+{
+    if (!b->has_normal) return false;
+    vec3 v = stored(b, x, y);
+    if (b->normal_unorm) v = v3(2.0 * v.x - 1.0, 2.0 * v.y - 1.0, 2.0 * v.z - 1.0);
+    if (b->normal_space == SPACE_WORLD)
+        v = m3_apply(m3_transpose(b->g->camera.world_from_camera), v);
+    else
+        v.y *= b->normal_sign_y, v.z *= b->normal_sign_z;
+    *n = v3_normalize(v);
+    return v3_dot(*n, *n) > 0.5;
+}
+
+// On a plane 1/z is linear across a perspective picture, z across an orthographic one.
+static double linear(const camera *c, double z) { return c->kind == CAMERA_PERSPECTIVE ? 1.0 / z : z; }
+
+static double depth_at(const build *b, const float *depth, int x, int y)
+{
+    if (x < 0 || y < 0 || x >= b->g->width || y >= b->g->height) return 0.0;
+    return (double)depth[build_index(b, x, y)];
+}
+
+// How badly the neighbour and the one after it predict this pixel; without the second, the plain difference, counted as worse.
+static double disagreement(const build *b, const float *depth, int x, int y, int dx, int dy)
+{
+    const camera *c = &b->g->camera;
+    double z0 = depth_at(b, depth, x, y), z1 = depth_at(b, depth, x + dx, y + dy),
+           z2 = depth_at(b, depth, x + 2 * dx, y + 2 * dy);
+    if (!(z1 > 0.0)) return INFINITY;
+    if (!(z2 > 0.0)) return 1e6 * fabs(linear(c, z1) - linear(c, z0));
+    return fabs(2.0 * linear(c, z1) - linear(c, z2) - linear(c, z0));
+}
+
+// The surface's direction along one axis: from both neighbours where both continue the surface about equally well, else from the
+// better one.
+static vec3 along(const build *b, const float *depth, int x, int y, int dx, int dy)
+{
+    const camera *c = &b->g->camera;
+    double back = disagreement(b, depth, x, y, -dx, -dy), ahead = disagreement(b, depth, x, y, dx, dy);
+    double z = depth_at(b, depth, x, y);
+    vec3 here = build_point(c, x, y, z);
+    if (isinf(back) && isinf(ahead)) return v3_sub(build_point(c, x + dx, y + dy, z), here);
+    double rounding = 1e-6 * fabs(linear(c, z));
+    bool use_back = back <= 3.0 * ahead + rounding, use_ahead = ahead <= 3.0 * back + rounding;
+    vec3 p = use_back ? build_point(c, x - dx, y - dy, depth_at(b, depth, x - dx, y - dy)) : here;
+    vec3 q = use_ahead ? build_point(c, x + dx, y + dy, depth_at(b, depth, x + dx, y + dy)) : here;
+    return v3_sub(q, p);
+}
+
+vec3 normals_from_depth(const build *b, const float *depth, int x, int y)
+{
+    const camera *c = &b->g->camera;
+    vec3 n = v3_normalize(v3_cross(along(b, depth, x, y, 1, 0), along(b, depth, x, y, 0, 1)));
+    vec3 ray = build_ray(c, x, y);
+    if (!(v3_dot(n, n) > 0.5)) return v3_scale(v3_normalize(ray), -1.0);
+    return v3_dot(n, ray) > 0.0 ? v3_scale(n, -1.0) : n;
+}
+
+static vec3 normal_of(const build *b, int x, int y)
+{
+    vec3 n;
+    if (!normals_read(b, x, y, &n)) return normals_from_depth(b, b->g->depth, x, y);
+    vec3 ray = v3_normalize(build_ray(&b->g->camera, x, y));
+    if (v3_dot(n, ray) <= facing_away) return n;
+    return v3_dot(n, normals_from_depth(b, b->g->depth, x, y)) < 0.0 ? v3_scale(n, -1.0) : n;
+}
+
+static void make_row(build *b, int y)
+{
+    for (int x = 0; x < b->g->width; x++) {
+        size_t i = build_index(b, x, y);
+        vec3 n = b->g->depth[i] > 0.0f ? normal_of(b, x, y) : v3(0, 0, 0);
+        float *out = b->g->normal + 4 * i;
+        out[0] = (float)n.x, out[1] = (float)n.y, out[2] = (float)n.z, out[3] = 0.0f;
+    }
+}
+
+void normals_make(build *b)
+{
+    build_rows(b, make_row);
+    b->g->normals_from_depth = !b->has_normal;
+}

@@ -1,0 +1,330 @@
+#include "gbuffer/resolve.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "gbuffer/conventions.h"
+#include "gbuffer/layers.h"
+
+enum { MOST_GROUPS = 64 };
+
+static const struct {
+    const char *name, *flag;
+    int components;
+} roles[ROLE_COUNT] = {
+    [ROLE_POSITION] = {"position", "--position", 3},
+    [ROLE_NORMAL] = {"normal", "--normal", 3},
+    [ROLE_DEPTH] = {"depth", "--depth", 1},
+    [ROLE_ALBEDO] = {"albedo", "--albedo", 3},
+    [ROLE_BEAUTY] = {"beauty", "--beauty", 3},
+    [ROLE_ALPHA] = {"alpha", "--beauty", 1},
+    [ROLE_ROUGHNESS] = {"roughness", "--roughness", 1},
+    [ROLE_METALLIC] = {"metallic", "--metallic", 1},
+    [ROLE_EMISSION] = {"emission", "--emission", 3},
+    [ROLE_DIFFUSE_DIRECT] = {"diffuse direct", "--beauty", 3},
+    [ROLE_DIFFUSE_INDIRECT] = {"diffuse indirect", "--beauty", 3},
+};
+
+typedef struct search {
+    const exr_file *file;
+    const resolve_options *options;
+    layer_index index;
+    const convention *row, *plain;
+    char keys[MOST_GROUPS][LAYER_KEY]; // the view layers: what stands before a position (or, without any, a depth)
+    int key_count;
+    const char *key;
+    error *e;
+} search;
+
+const char *role_name(role r) { return roles[r].name; }
+
+static int match(const search *s, const char *pattern, role r, layer_group *groups)
+{
+    return layers_match(&s->index, pattern, roles[r].components, groups, MOST_GROUPS);
+}
+
+// 4 for a role some pattern finds, 5 if it does so in the same case.
+static int role_score(const search *s, const convention *row, role r)
+{
+    layer_group groups[MOST_GROUPS];
+    int best = 0;
+    for (int p = 0; p < CONVENTION_PATTERNS && row->patterns[r][p]; p++)
+        for (int n = match(s, row->patterns[r][p], r, groups); n > 0; n--) {
+            int points = groups[n - 1].exact ? 5 : 4;
+            best = points > best ? points : best;
+        }
+    return best;
+}
+
+static bool has_mark(const exr_file *file, const convention *row)
+{
+    for (int m = 0; file->core && m < CONVENTION_MARKS && row->marks[m]; m++)
+        for (int p = 0; p < file->part_count; p++)
+            if (exr_attr_exists(file, p, row->marks[m])) return true;
+    return false;
+}
+
+static void choose_row(search *s)
+{
+    s->row = s->plain = &conventions[convention_count - 1];
+    int best = -1;
+    for (int i = convention_count - 1; i >= 0; i--) {
+        const convention *row = &conventions[i];
+        int geometry = role_score(s, row, ROLE_POSITION) + role_score(s, row, ROLE_DEPTH), score = geometry;
+        for (int r = 0; r < ROLE_COUNT; r++)
+            if (r != ROLE_POSITION && r != ROLE_DEPTH) score += role_score(s, row, (role)r);
+        if (geometry > 0 && has_mark(s->file, row)) score += 1000;
+        bool earlier_wins = s->row != s->plain && score == best;
+        if (score > best || earlier_wins) best = score, s->row = row;
+    }
+}
+
+static bool known_key(const search *s, const char *key)
+{
+    for (int k = 0; k < s->key_count; k++)
+        if (strcmp(s->keys[k], key) == 0) return true;
+    return false;
+}
+
+static void gather_keys(search *s, role r)
+{
+    const convention *rows[2] = {s->row, s->plain};
+    layer_group groups[MOST_GROUPS];
+    for (int i = 0; i < (s->row == s->plain ? 1 : 2); i++)
+        for (int p = 0; p < CONVENTION_PATTERNS && rows[i]->patterns[r][p]; p++) {
+            int n = match(s, rows[i]->patterns[r][p], r, groups);
+            for (int g = 0; g < n && s->key_count < MOST_GROUPS; g++)
+                if (!known_key(s, groups[g].key)) memcpy(s->keys[s->key_count++], groups[g].key, LAYER_KEY);
+        }
+}
+
+static bool wrong_key(const search *s, const char *what)
+{
+    char list[400] = "";
+    size_t used = 0;
+    for (int k = 0; k < s->key_count && used + LAYER_KEY + 8 < sizeof list; k++)
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s'%s'", used ? ", " : "", s->keys[k]);
+    return err_set(s->e, ERR_INPUT, s->file->path, NULL, "%s; choose one of %s with --view-layer", what, list);
+}
+
+// An override of the geometry decides the view layer too, when its name begins with one.
+static const char *key_of_override(const search *s)
+{
+    const char *name = s->options->names[ROLE_POSITION] ? s->options->names[ROLE_POSITION] : s->options->names[ROLE_DEPTH];
+    const char *best = NULL;
+    for (int k = 0; name && k < s->key_count; k++) {
+        size_t n = strlen(s->keys[k]);
+        bool begins = n == 0 || (strncasecmp(name, s->keys[k], n) == 0 && name[n] == '.');
+        if (begins && (!best || n > strlen(best))) best = s->keys[k];
+    }
+    return best;
+}
+
+static bool choose_key(search *s)
+{
+    gather_keys(s, ROLE_POSITION);
+    if (s->key_count == 0) gather_keys(s, ROLE_DEPTH);
+    const char *wanted = s->options->view_layer;
+    if (wanted) {
+        for (int any_case = 0; any_case < 2; any_case++)
+            for (int k = 0; k < s->key_count; k++)
+                if ((any_case ? strcasecmp : strcmp)(s->keys[k], wanted) == 0) {
+                    s->key = s->keys[k];
+                    return true;
+                }
+        char what[256];
+        snprintf(what, sizeof what, "the file has no view layer '%.128s' with positions or depth", wanted);
+        if (s->key_count == 0) return err_set(s->e, ERR_INPUT, s->file->path, NULL, "%s", what);
+        return wrong_key(s, what);
+    }
+    if (s->key_count <= 1) {
+        s->key = s->key_count ? s->keys[0] : "";
+        return true;
+    }
+    s->key = key_of_override(s);
+    return s->key || wrong_key(s, "the file holds several view layers");
+}
+
+// The group of the key among those a pattern finds. key NULL: the only group there is, if it is of no other view layer.
+static bool pick(const search *s, const char *pattern, role r, const char *key, layer_group *out)
+{
+    layer_group groups[MOST_GROUPS];
+    int n = match(s, pattern, r, groups);
+    for (int g = 0; g < n; g++)
+        if (key ? strcmp(groups[g].key, key) == 0 : n == 1 && !known_key(s, groups[g].key)) {
+            *out = groups[g];
+            return true;
+        }
+    return false;
+}
+
+// *row and *pattern receive what found it.
+static bool detect(const search *s, role r, layer_group *out, const convention **row, const char **pattern)
+{
+    const char *const scopes[3] = {s->key, "", NULL};
+    const convention *rows[2] = {s->row, s->plain};
+    for (int scope = 0; scope < 3; scope++)
+        for (int i = 0; i < 2; i++)
+            for (int p = 0; p < CONVENTION_PATTERNS && rows[i]->patterns[r][p]; p++)
+                if (pick(s, rows[i]->patterns[r][p], r, scopes[scope], out)) {
+                    *row = rows[i], *pattern = rows[i]->patterns[r][p];
+                    return true;
+                }
+    return false;
+}
+
+static bool one_channel(const search *s, const char *name, channel_ref *out)
+{
+    for (int any_case = 0; any_case < 2; any_case++)
+        for (int p = 0; p < s->file->part_count; p++)
+            for (int c = 0; c < s->file->parts[p].channel_count; c++)
+                if ((any_case ? strcasecmp : strcmp)(s->file->parts[p].channels[c].name, name) == 0) {
+                    *out = (channel_ref){p, c};
+                    return true;
+                }
+    return false;
+}
+
+// "a.X,b.Y,c.Z": three channels by their full names.
+static bool listed_channels(const search *s, const char *name, int components, layer_group *out)
+{
+    char copy[LAYER_NAME], *rest = copy;
+    snprintf(copy, sizeof copy, "%s", name);
+    out->components = components;
+    for (int c = 0; c < components; c++) {
+        const char *token = strsep(&rest, ",");
+        if (!token || !one_channel(s, token, &out->channels[c])) return false;
+    }
+    return rest == NULL;
+}
+
+static bool override(const search *s, role r, layer_group *out)
+{
+    const char *name = s->options->names[r];
+    int need = roles[r].components;
+    if (listed_channels(s, name, need, out) || layers_exact(&s->index, name, need, out)) return true;
+    if (pick(s, name, r, s->key, out) || pick(s, name, r, NULL, out)) return true;
+    channel_ref ignored;
+    layer_group scalar;
+    bool too_few = need == 3 && (one_channel(s, name, &ignored) || layers_exact(&s->index, name, 1, &scalar));
+    char list[400];
+    layers_list(&s->index, list, sizeof list);
+    if (too_few)
+        return err_set(s->e, ERR_INPUT, s->file->path, name,
+                       "%s needs a layer with the channels X Y Z or R G B (or three channel names with commas between)",
+                       roles[r].flag);
+    return err_set(s->e, ERR_INPUT, s->file->path, name, "%s names no layer or channel of the file, which has %s", roles[r].flag,
+                   list);
+}
+
+static void take(resolution *out, role r, const layer_group *group)
+{
+    memcpy(out->channels[r], group->channels, sizeof out->channels[r]);
+    out->components[r] = group->components;
+}
+
+static bool ends_in_any(const char *name, const char *const *patterns, int count)
+{
+    for (int p = 0; p < count && patterns[p]; p++) {
+        size_t n = strlen(name), m = strlen(patterns[p]);
+        if (n >= m && strcasecmp(name + n - m, patterns[p]) == 0 && (n == m || name[n - m - 1] == '.')) return true;
+    }
+    return false;
+}
+
+// The albedo's kind follows from the name it was found by, unless an option said it. A name given by the user is judged by the
+// first row that knows it.
+static albedo_kind albedo_named(const search *s, const convention *row, const char *name)
+{
+    if (s->options->albedo != ALBEDO_AUTO) return s->options->albedo;
+    for (int i = 0; !row && name && i < convention_count; i++)
+        if (ends_in_any(name, conventions[i].patterns[ROLE_ALBEDO], CONVENTION_PATTERNS)) row = &conventions[i];
+    if (!row) row = s->row;
+    const int count = (int)(sizeof row->diffuse_albedo / sizeof *row->diffuse_albedo);
+    return name && ends_in_any(name, row->diffuse_albedo, count) ? ALBEDO_DIFFUSE : row->albedo;
+}
+
+static bool find_roles(const search *s, resolution *out)
+{
+    for (int r = 0; r < ROLE_COUNT; r++) {
+        layer_group group;
+        const char *name = s->options->names[r];
+        const convention *row = NULL;
+        for (int c = 0; c < 4; c++) out->channels[r][c] = (channel_ref){-1, -1};
+        if (name) {
+            if (!override(s, (role)r, &group)) return false;
+            take(out, (role)r, &group);
+        } else if (detect(s, (role)r, &group, &row, &name)) {
+            take(out, (role)r, &group);
+        }
+        if (r == ROLE_ALBEDO) out->albedo = albedo_named(s, row, name);
+    }
+    // The alpha that belongs to the beauty is the one in its own layer.
+    if (out->components[ROLE_BEAUTY] && !s->options->names[ROLE_ALPHA]) {
+        channel_ref a = layers_sibling(&s->index, out->channels[ROLE_BEAUTY][0], "A");
+        if (a.part >= 0) out->channels[ROLE_ALPHA][0] = a, out->components[ROLE_ALPHA] = 1;
+    }
+    return true;
+}
+
+static bool no_geometry(const search *s)
+{
+    char has[360];
+    layers_list(&s->index, has, sizeof has);
+    return err_set(
+        s->e, ERR_INPUT, s->file->path, NULL,
+        "no position and no depth found (looked for Position, P, Depth, Z and the like); the file has %s; name them with "
+        "--position or --depth",
+        has);
+}
+
+bool resolve_channels(const exr_file *file, const resolve_options *options, resolution *out, log_t *log, error *e)
+{
+    search s = {.file = file, .options = options, .e = e};
+    bool done = false;
+    *out = (resolution){0};
+    if (!layers_index(file, &s.index, e)) return false;
+    choose_row(&s);
+    if (!choose_key(&s) || !find_roles(&s, out)) goto out;
+    bool has_position = out->components[ROLE_POSITION] > 0;
+    if (!has_position && !out->components[ROLE_DEPTH]) {
+        no_geometry(&s);
+        goto out;
+    }
+    out->convention = s.row->name;
+    snprintf(out->view_layer, sizeof out->view_layer, "%s", s.key);
+    out->main_part = out->channels[has_position ? ROLE_POSITION : ROLE_DEPTH][0].part;
+    out->depth = options->depth;
+    if (out->depth == DEPTH_AUTO && !has_position) out->depth = s.row->depth == DEPTH_AUTO ? DEPTH_PLANAR : s.row->depth;
+    out->up_is_z = s.row->up_is_z;
+    out->background_depth = s.row->background_depth;
+    for (int r = 0; r < ROLE_COUNT; r++) {
+        char line[512];
+        resolve_describe(file, out, (role)r, line, sizeof line);
+        if (out->components[r]) log_info(log, "%s", line);
+    }
+    done = true;
+out:
+    layers_free(&s.index);
+    return done;
+}
+
+void resolve_describe(const exr_file *file, const resolution *r, role which, char *buf, size_t size)
+{
+    static const char *const types[] = {[SAMPLE_UINT] = "uint", [SAMPLE_HALF] = "half", [SAMPLE_FLOAT] = "float"};
+    if (r->components[which] == 0) {
+        snprintf(buf, size, "%s: absent", roles[which].name);
+        return;
+    }
+    const channel_ref *c = r->channels[which];
+    const exr_part *part = &file->parts[c[0].part];
+    const exr_channel *first = &part->channels[c[0].channel];
+    int used = snprintf(buf, size, "%s: %s", roles[which].name, first->name);
+    for (int i = 1; i < r->components[which] && used > 0 && (size_t)used < size; i++) {
+        const char *name = file->parts[c[i].part].channels[c[i].channel].name, *dot = strrchr(name, '.');
+        used += snprintf(buf + used, size - (size_t)used, "/%s", dot ? dot + 1 : name);
+    }
+    if (used > 0 && (size_t)used < size)
+        snprintf(buf + used, size - (size_t)used, " (part %d, %s)", c[0].part, types[first->type]);
+}

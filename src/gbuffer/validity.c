@@ -1,0 +1,92 @@
+// Which pixels hold a surface, and a sample of them spread over the frame.
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "gbuffer/build.h"
+#include "gbuffer/solve.h"
+
+enum { SAMPLE_POINTS = 12000 };
+static const double far_position = 9e9;    // some renderers fill P with 1e10 or 1e30
+static const double largest_half = 65504.; // what a clamped background becomes
+
+static bool depth_good(const build *b, double z)
+{
+    if (!(z > 0.0) || !isfinite(z) || z >= b->r->background_depth) return false;
+    return b->depth.type != SAMPLE_HALF || z < largest_half;
+}
+
+static surface classify(const build *b, int x, int y)
+{
+    bool good = !b->has_depth || depth_good(b, plane_get(&b->depth, x, y));
+    if (!b->has_position) return good ? SURFACE_YES : SURFACE_NONE;
+    vec3 p = build_position(b, x, y);
+    double most = fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
+    if (!good || !v3_finite(p) || most >= far_position) return SURFACE_NONE;
+    if (most > 0.0) return SURFACE_YES;
+    return b->has_depth ? SURFACE_ORIGIN : SURFACE_NONE;
+}
+
+static void classify_row(build *b, int y)
+{
+    for (int x = 0; x < b->g->width; x++) b->surface[build_index(b, x, y)] = (uint8_t)classify(b, x, y);
+}
+
+static size_t count_surfaces(const build *b)
+{
+    size_t n = 0, total = (size_t)b->g->width * (size_t)b->g->height;
+    for (size_t i = 0; i < total; i++) n += b->surface[i] == SURFACE_YES;
+    return n;
+}
+
+// A depth that calls most of the positions background is no depth of them (an artist's remapped Z, an empty channel).
+bool validity_classify(build *b)
+{
+    build_rows(b, classify_row);
+    b->candidates = count_surfaces(b);
+    if (!b->has_position || !b->has_depth) return true;
+    if (2 * b->candidates >= (size_t)b->g->width * (size_t)b->g->height) return true;
+    b->has_depth = false;
+    size_t with_depth = b->candidates;
+    uint8_t *kept = b->surface;
+    b->surface = mem_zero((size_t)b->g->width * (size_t)b->g->height, 1, b->e);
+    if (!b->surface) {
+        b->surface = kept;
+        return false;
+    }
+    build_rows(b, classify_row);
+    size_t without = count_surfaces(b);
+    if (2 * with_depth >= without) {
+        free(b->surface);
+        b->surface = kept;
+        b->has_depth = true;
+        return true;
+    }
+    free(kept);
+    b->candidates = without;
+    log_warn(b->log, "depth-background",
+             "the depth channel calls %zu of %zu pixels with a position background; it is ignored (--depth names another)",
+             without - with_depth, without);
+    build_note(b, "depth ignored: background where there are positions");
+    return true;
+}
+
+// One pixel out of every run of `stride` surface pixels in reading order, at random.
+bool validity_sample(build *b)
+{
+    size_t stride = b->candidates / SAMPLE_POINTS + 1, most = b->candidates / stride + 1;
+    b->points = mem_pixels(most, sizeof *b->points, b->e);
+    b->point_depth = mem_pixels(most, sizeof *b->point_depth, b->e);
+    if (!b->points || !b->point_depth) return false;
+    uint64_t random = 3;
+    size_t seen = 0, chosen = (size_t)(solve_random(&random) % stride);
+    for (int y = 0; y < b->g->height; y++)
+        for (int x = 0; x < b->g->width; x++) {
+            if (b->surface[build_index(b, x, y)] != SURFACE_YES) continue;
+            if (seen++ != chosen) continue;
+            chosen = seen - 1 - (seen - 1) % stride + stride + (size_t)(solve_random(&random) % stride);
+            vec3 p = b->has_position ? build_position(b, x, y) : v3(0, 0, 0);
+            b->points[b->point_count] = (camera_point){p, x + 0.5, y + 0.5};
+            b->point_depth[b->point_count++] = b->has_depth ? plane_get(&b->depth, x, y) : (double)NAN;
+        }
+    return true;
+}

@@ -1,0 +1,152 @@
+#include "light/environment.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "light/latlong.h"
+#include "light/mips.h"
+#include "light/sh.h"
+
+static const float greatest = 1e30f;
+
+// World to map space. OpenEXR's latlong is ours with the axes renamed: longitude atan2(x, z) and height y are our atan2(y, x) and
+// z for the direction (z, x, y), a rotation. Turning the environment by r turns the looking direction by -r.
+static mat3 orientation(bool up_z, double rotate_degrees)
+{
+    double r = rotate_degrees * M_PI / 180, c = cos(r), s = sin(r);
+    mat3 turn = {{{c, s, 0}, {-s, c, 0}, {0, 0, 1}}};
+    mat3 y_to_z = {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}};
+    return up_z ? turn : m3_mul(turn, y_to_z);
+}
+
+static float largest_finite(const float *rgb, size_t n)
+{
+    float most = 0;
+    for (size_t i = 0; i < n; i++)
+        if (isfinite(rgb[i]) && rgb[i] > most) most = rgb[i];
+    return most;
+}
+
+// Level 0 from the map's values. Returns how many texels had to be repaired.
+static size_t fill_level0(const float *rgb, size_t texels, double scale, float *rgba)
+{
+    size_t count = 0;
+    float most = -1; // the largest finite value, looked for when an infinity asks for it
+    for (size_t i = 0; i < texels; i++) {
+        bool bad = false;
+        for (size_t c = 0; c < 3; c++) {
+            float v = rgb[3 * i + c];
+            if (!(v >= 0) || isinf(v)) {
+                bad = true;
+                if (v > 0 && most < 0) most = largest_finite(rgb, 3 * texels);
+                v = v > 0 ? most : 0;
+            }
+            double scaled = (double)v * scale;
+            rgba[4 * i + c] = scaled < (double)greatest ? (float)scaled : greatest;
+        }
+        rgba[4 * i + 3] = 0;
+        count += bad;
+    }
+    return count;
+}
+
+static bool check_size(int width, int height, const char *path, log_t *log, error *e)
+{
+    if (width < 1 || height < 1 || width > ENV_MAX_SIZE || height > ENV_MAX_SIZE)
+        return err_set(e, ERR_INPUT, path, NULL,
+                       "the environment map has %d x %d texels, at most %d a side are taken; scale it down", width, height,
+                       ENV_MAX_SIZE);
+    if (height == 6 * width || width == 6 * height)
+        return err_set(e, ERR_INPUT, path, NULL,
+                       "%d x %d looks like a cube map, and a lat-long map is needed; convert it with exrenvmap -l", width,
+                       height);
+    if (width != 2 * height && (width > 2 || height > 2))
+        log_warn(log, "env-shape",
+                 "%s: the environment map is %d x %d, not twice as wide as high; it is taken as the whole sphere",
+                 path ? path : "environment", width, height);
+    return true;
+}
+
+bool environment_prepare(const float *rgb, int width, int height, const env_options *options, environment *out, log_t *log,
+                         error *e)
+{
+    *out = (environment){.map_from_world = orientation(options->up_z, options->rotate_degrees)};
+    if (!check_size(width, height, options->path, log, e)) return false;
+    size_t texels = (size_t)width * (size_t)height;
+    float *rgba = mem_pixels(texels, 4 * sizeof *rgba, e);
+    if (!rgba) return false;
+    out->levels[0] = (env_level){width, height, rgba};
+    out->level_count = 1;
+    out->repaired = fill_level0(rgb, texels, options->scale, rgba);
+    if (out->repaired)
+        log_warn(log, "env-repaired", "%s: %zu of %zu texels of the environment were NaN, infinite or negative and were repaired",
+                 options->path ? options->path : "environment", out->repaired, texels);
+    if (!sh_project(rgba, width, height, options->threads, out->sh, e) || !mips_build(out, options->threads, e)) {
+        environment_free(out);
+        return false;
+    }
+    for (int c = 0; c < 3; c++) out->mean[c] = out->sh[0][c] / sqrt(4 * M_PI);
+    return true;
+}
+
+bool environment_load(const env_options *options, environment *out, log_t *log, error *e)
+{
+    static const float white[3] = {1, 1, 1};
+    *out = (environment){0};
+    if (!options->path) {
+        if (!environment_prepare(white, 1, 1, options, out, log, e)) return false;
+        out->white = true;
+        return true;
+    }
+    int width, height;
+    float *rgb = NULL;
+    if (!latlong_read(options->path, options->threads, &width, &height, &rgb, log, e)) return false;
+    bool ok = environment_prepare(rgb, width, height, options, out, log, e);
+    free(rgb);
+    return ok;
+}
+
+void environment_free(environment *env)
+{
+    if (!env) return;
+    for (int i = 0; i < env->level_count; i++) free(env->levels[i].rgba);
+    *env = (environment){0};
+}
+
+double env_texel_solid_angle(int width, int height, int j)
+{
+    // cos a - cos b as a product, which loses nothing at the poles.
+    return 2 * M_PI / width * 2 * sin(M_PI * (j + 0.5) / height) * sin(0.5 * M_PI / height);
+}
+
+// ---- lookup
+
+static vec3 texel(const env_level *l, int x, int y)
+{
+    const float *p = l->rgba + 4 * ((size_t)y * (size_t)l->width + (size_t)x);
+    return v3((double)p[0], (double)p[1], (double)p[2]);
+}
+
+static vec3 mix(vec3 a, vec3 b, double t) { return v3_add(v3_scale(a, 1 - t), v3_scale(b, t)); }
+
+static int wrap(int x, int width) { return ((x % width) + width) % width; }
+static int clamp(int y, int height) { return y < 0 ? 0 : y >= height ? height - 1 : y; }
+
+static vec3 bilinear(const env_level *l, double u, double v)
+{
+    double x = u * l->width - 0.5, y = v * l->height - 0.5;
+    int x0 = (int)floor(x), y0 = (int)floor(y);
+    int xa = wrap(x0, l->width), xb = wrap(x0 + 1, l->width), ya = clamp(y0, l->height), yb = clamp(y0 + 1, l->height);
+    vec3 above = mix(texel(l, xa, ya), texel(l, xb, ya), x - x0), below = mix(texel(l, xa, yb), texel(l, xb, yb), x - x0);
+    return mix(above, below, y - y0);
+}
+
+vec3 environment_lookup(const environment *env, vec3 d, double level)
+{
+    double u = 0.5 - atan2(d.y, d.x) / (2 * M_PI), v = acos(fmax(-1, fmin(1, d.z))) / M_PI;
+    double top = fmin(fmax(level, 0), env->level_count - 1);
+    int sharp = (int)floor(top), soft = sharp + 1 < env->level_count ? sharp + 1 : sharp;
+    return mix(bilinear(&env->levels[sharp], u, v), bilinear(&env->levels[soft], u, v), top - sharp);
+}

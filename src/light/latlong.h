@@ -1,0 +1,12 @@
+// Reading the file of an environment map.
+#ifndef SSDO_LIGHT_LATLONG_H
+#define SSDO_LIGHT_LATLONG_H
+
+#include "base/error.h"
+#include "base/log.h"
+
+// *rgb: 3 floats a texel, row-major, top row first, as stored (not repaired); the caller frees it. ERR_INPUT names what is
+// missing.
+bool latlong_read(const char *path, int threads, int *width, int *height, float **rgb, log_t *log, error *e);
+
+#endif

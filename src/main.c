@@ -1,0 +1,66 @@
+// argv to job.
+
+#include <locale.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cli/options.h"
+#include "pipeline/frame.h"
+#include "pipeline/preview.h"
+#include "pipeline/report.h"
+
+static int fail(const error *e)
+{
+    char text[1600];
+    err_format(e, text, sizeof text);
+    fprintf(stderr, "ssdo-filter: %s\n", text);
+    return (int)e->code;
+}
+
+static int list_devices(void)
+{
+    gpu_device list[32];
+    int n = gpu_list_devices(list, 32);
+    for (int i = 0; i < n; i++) printf("%d  %s\n", i, list[i].description);
+    if (n == 0) puts("no EGL devices; the surfaceless platform may still work");
+    return 0;
+}
+
+static bool run(const options *o, log_t *log, error *e)
+{
+    job j;
+    frame_result r = {0};
+    bool ok = job_open(&j, o, log, e);
+    if (ok) {
+        ok = frame_run(&j, o->inputs[0], o->output, &r, e) && (!o->preview || preview_write(&r, o->preview, e)) &&
+             (!o->report || report_write(&j, &r, o->output, o->report, e));
+        frame_free(&r);
+    }
+    job_close(&j);
+    return ok;
+}
+
+int main(int argc, char **argv)
+{
+    error e = {0};
+    options o;
+    setlocale(LC_NUMERIC, "C"); // whatever LC_ALL says
+    signal(SIGPIPE, SIG_IGN);
+    options_defaults(&o);
+    if (!options_parse(argc, argv, &o, &e)) return fail(&e);
+    if (o.help) {
+        options_print_help(stdout);
+        return 0;
+    }
+    if (o.version) {
+        puts("ssdo-filter " SSDO_VERSION);
+        return 0;
+    }
+    if (o.list_devices) return list_devices();
+    log_t log;
+    log_init(&log, o.quiet ? LOG_QUIET : o.verbose ? LOG_INFO : LOG_WARN);
+    bool ok = run(&o, &log, &e);
+    log_free(&log);
+    return ok ? 0 : fail(&e);
+}

@@ -1,0 +1,16 @@
+#include "passes/pass.h"
+
+#include <stdio.h>
+
+bool pass_edges(pass_context *c, error *e)
+{
+    char defines[96];
+    snprintf(defines, sizeof defines, "%s%s%s", c->visibility.id ? "VISIBILITY 1\n" : "", c->radiance.id ? "RADIANCE 1\n" : "",
+             c->indirect.id ? "INDIRECT 1\n" : "");
+    const pass_binding bindings[] = {{2, &c->coverage, GL_READ_ONLY},
+                                     {3, &c->occlusion, GL_READ_WRITE},
+                                     {4, &c->visibility, GL_READ_WRITE},
+                                     {5, &c->radiance, GL_READ_WRITE},
+                                     {6, &c->indirect, GL_READ_WRITE}};
+    return pass_run(c, "edges", defines, NULL, 0, bindings, 5, false, e);
+}

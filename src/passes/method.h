@@ -1,0 +1,24 @@
+// The methods: one row each. A new method is one shader, one pass file and one row.
+#ifndef SSDO_PASSES_METHOD_H
+#define SSDO_PASSES_METHOD_H
+
+#include "passes/pass.h"
+
+typedef struct method {
+    const char *name, *summary;
+    const char *weighting; // of its occlusion
+    const char *reach;     // of its visibility test
+    const char *blind;     // what it cannot see
+    int samples, blur;     // defaults
+    double thickness;      // default, share of the radius
+    bool fills_radiance;   // own radiance and visibility; else SH irradiance x occlusion
+    const char *bounce;    // its own bounce, NULL for none
+    bool (*run)(pass_context *c, error *e);
+} method;
+
+extern const method methods[]; // ends with a NULL name
+const method *method_find(const char *name);
+const char *method_names(void); // "ssdo, alchemy"
+enum { METHOD_DEFAULT = 0 };    // index of the default row
+
+#endif

@@ -1,0 +1,93 @@
+// What the passes share: the frame on the GPU, the settings, the layers as they come to be.
+//
+// A pass is one function that reads some images of the context and fills others. Images it needs are made by pass_make (once a
+// frame, by name of the field). Passes run in the order of pipeline/plan.c; nothing here decides what runs.
+#ifndef SSDO_PASSES_PASS_H
+#define SSDO_PASSES_PASS_H
+
+#include "base/error.h"
+#include "base/log.h"
+#include "gbuffer/gbuffer.h"
+#include "gpu/gpu.h"
+#include "light/environment.h"
+
+enum { PASS_MAX_TIMINGS = 48 };
+
+typedef struct pass_timing {
+    const char *name;
+    double wall_ms, cpu_ms;
+} pass_timing;
+
+// Settings of one frame, all resolved: no "auto" is left.
+typedef struct pass_settings {
+    double radius;    // scene units
+    double thickness; // scene units; INFINITY allowed
+    int samples;
+    int blur; // pixels, 0 none
+    double scale, contrast;
+    double env_level; // < 0: by solid angle
+    double bounce_strength;
+    int seed;
+    double amount;
+    bool visibility_mode;
+    bool base_albedo;     // albedo is a base colour: metals have one
+    bool averaged_albedo; // albedo, emission are stored multiplied by coverage
+    int background;       // composite.comp's params.background
+    bool relight;         // the composite is lit by us; otherwise it is the beauty, occluded
+    bool bounce_in_composite;
+} pass_settings;
+
+typedef struct pass_context {
+    gpu *g;
+    log_t *log;
+    bool timing; // measure: waits for the GPU after every pass
+    int width, height;
+    pass_settings set;
+    bool want_diffuse;                   // the composite pass also writes the diffuse layer
+    bool want_radiance, want_visibility; // what the method's own loop should make besides occlusion
+
+    // Inputs on the GPU; id 0 where the plan does not need them.
+    gpu_image depth, normal, albedo, beauty, material, emission, diffuse_direct, coverage, environment;
+    // Layers; id 0 until their pass has run.
+    gpu_image occlusion, visibility, radiance, indirect, specular, diffuse_share, composite, diffuse;
+
+    GLuint frame_uniforms, params_uniforms;
+    gpu_tiles tiles;
+    pass_timing timings[PASS_MAX_TIMINGS];
+    int timing_count;
+} pass_context;
+
+// Uploads what `need` (gbuffer_need bits) says and the plan wants. env may be NULL (no light wanted).
+bool pass_begin(pass_context *c, gpu *g, const gbuffer *gb, const environment *env, const pass_settings *set, bool timing,
+                log_t *log, error *e);
+void pass_end(pass_context *c);
+
+// The environment's texture, once per batch.
+bool pass_upload_environment(gpu *g, const environment *env, gpu_image *out, error *e);
+
+typedef struct pass_binding {
+    int unit;
+    const gpu_image *image;
+    GLenum access;
+} pass_binding;
+
+// Runs shader `name` over the tiles with the given parameter block (may be NULL) and images.
+bool pass_run(pass_context *c, const char *name, const char *defines, const void *params, size_t params_size,
+              const pass_binding *bindings, int binding_count, bool everywhere, error *e);
+
+// Makes an image of the frame's size, cleared to `value` in every component.
+bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, error *e);
+
+// ---- the passes, one file and one shader each
+// ------------------------------------------------------------------------------------
+bool pass_alchemy(pass_context *c, error *e);     // -> occlusion (1 - S, before its bounds)
+bool pass_ssdo(pass_context *c, error *e);        // -> occlusion, radiance, visibility
+bool pass_ssdo_bounce(pass_context *c, error *e); // radiance or beauty, albedo -> indirect
+bool pass_blur(pass_context *c, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e); // in place; NULL = none
+bool pass_look(pass_context *c, gpu_image *scalar, error *e); // scale and contrast, in place
+bool pass_irradiance(pass_context *c, error *e);              // occlusion -> radiance
+bool pass_edges(pass_context *c, error *e);                   // fills the layers of partly covered pixels
+bool pass_specular(pass_context *c, error *e);                // material, albedo -> specular, diffuse_share
+bool pass_composite(pass_context *c, error *e);               // layers -> composite
+
+#endif

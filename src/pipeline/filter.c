@@ -1,0 +1,93 @@
+#include "pipeline/filter.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/mem.h"
+
+static bool run_passes(pass_context *c, const plan *p, error *e)
+{
+    if (!p->method->run(c, e)) return false;
+    if (p->blur && !pass_blur(c, &c->occlusion, &c->visibility, &c->radiance, e)) return false;
+    if (p->look && !pass_look(c, &c->occlusion, e)) return false;
+    if (p->look && c->visibility.id && !pass_look(c, &c->visibility, e)) return false;
+    if (p->irradiance && !pass_irradiance(c, e)) return false;
+    if (p->bounce && !pass_ssdo_bounce(c, e)) return false;
+    if (p->bounce && p->blur && !pass_blur(c, NULL, NULL, &c->indirect, e)) return false;
+    if (p->edges && c->coverage.id && !pass_edges(c, e)) return false;
+    if (p->specular && !pass_specular(c, e)) return false;
+    return !p->composite || pass_composite(c, e);
+}
+
+// A layer never holds NaN or infinity, whatever happened before; occlusion stays in 0..1 and light is not negative.
+static void sanitise(layer_id l, float *v, size_t n)
+{
+    bool share = l == LAYER_OCCLUSION || l == LAYER_VISIBILITY,
+         light = l == LAYER_RADIANCE || l == LAYER_INDIRECT || l == LAYER_SPECULAR;
+    for (size_t i = 0; i < n; i++) {
+        if (!(fabsf(v[i]) <= 3e38f)) v[i] = share ? 1.0f : isnan(v[i]) ? 0.0f : copysignf(3e38f, v[i]);
+        if (share) v[i] = v[i] < 0.0f ? 0.0f : v[i] > 1.0f ? 1.0f : v[i];
+        if (light && v[i] < 0.0f) v[i] = 0.0f;
+    }
+}
+
+static bool read_back(const gpu_image *image, layer_id l, frame_result *r, error *e)
+{
+    size_t pixels = (size_t)r->gb.width * (size_t)r->gb.height, channels = strlen(layer_table[l].channels);
+    size_t stored = image->format == GL_R32F ? 1 : 4;
+    float *v = mem_pixels(pixels * stored, sizeof *v, e);
+    if (!v) return false;
+    gpu_image_download(image, v);
+    for (size_t i = 0; stored != channels && i < pixels; i++)
+        for (size_t k = 0; k < channels; k++) v[i * channels + k] = v[i * stored + k];
+    sanitise(l, v, pixels * channels);
+    r->layers[l] = v;
+    return true;
+}
+
+static bool read_layers(const pass_context *c, frame_result *r, error *e)
+{
+    const gpu_image *images[LAYER_COUNT] = {
+        [LAYER_OCCLUSION] = &c->occlusion,
+        [LAYER_RADIANCE] = &c->radiance,
+        [LAYER_INDIRECT] = &c->indirect,
+        [LAYER_COMPOSITE] = &c->composite,
+        [LAYER_VISIBILITY] = c->visibility.id ? &c->visibility : &c->occlusion,
+        [LAYER_SPECULAR] = &c->specular,
+        [LAYER_DIFFUSE] = &c->diffuse,
+    };
+    for (int i = 0; i < LAYER_COUNT; i++)
+        if (r->plan.layers & 1u << i && !read_back(images[i], (layer_id)i, r, e)) return false;
+    return true;
+}
+
+static double milliseconds(clockid_t clock)
+{
+    struct timespec t;
+    clock_gettime(clock, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+bool filter_frame(job *j, frame_result *r, error *e)
+{
+    pass_context c;
+    double wall = milliseconds(CLOCK_MONOTONIC), cpu = milliseconds(CLOCK_PROCESS_CPUTIME_ID);
+    const environment *env = j->env_loaded ? &j->env : NULL;
+    if (!pass_begin(&c, &j->g, &r->gb, env, &r->set, j->o->report != NULL, j->log, e)) return false;
+    c.environment = j->env_image;
+    c.want_radiance = r->plan.want_radiance;
+    c.want_visibility = r->plan.want_visibility && r->plan.method->fills_radiance;
+    c.want_diffuse = r->plan.layers & 1u << LAYER_DIFFUSE;
+    bool ok = run_passes(&c, &r->plan, e) && gpu_finish(&j->g, "the passes", e);
+    r->wall_ms[STAGE_PASSES] = milliseconds(CLOCK_MONOTONIC) - wall;
+    r->cpu_ms[STAGE_PASSES] = milliseconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
+    ok = ok && read_layers(&c, r, e) && gpu_finish(&j->g, "the read-back", e);
+    r->wall_ms[STAGE_READ_BACK] = milliseconds(CLOCK_MONOTONIC) - wall - r->wall_ms[STAGE_PASSES];
+    r->cpu_ms[STAGE_READ_BACK] = milliseconds(CLOCK_PROCESS_CPUTIME_ID) - cpu - r->cpu_ms[STAGE_PASSES];
+    memcpy(r->timings, c.timings, sizeof r->timings);
+    r->timing_count = c.timing_count;
+    pass_end(&c);
+    return ok;
+}

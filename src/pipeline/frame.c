@@ -1,0 +1,218 @@
+#include "pipeline/frame.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/mem.h"
+#include "base/threads.h"
+#include "exr/write.h"
+#include "gbuffer/conventions.h"
+#include "pipeline/filter.h"
+#include "pipeline/output.h"
+
+typedef struct stopwatch {
+    double wall, cpu;
+} stopwatch;
+
+static stopwatch read_clocks(void)
+{
+    struct timespec w, c;
+    clock_gettime(CLOCK_MONOTONIC, &w);
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &c);
+    return (stopwatch){(double)w.tv_sec * 1e3 + (double)w.tv_nsec * 1e-6, (double)c.tv_sec * 1e3 + (double)c.tv_nsec * 1e-6};
+}
+
+static void lap(frame_result *r, stage s, stopwatch *since)
+{
+    stopwatch t = read_clocks();
+    r->wall_ms[s] += t.wall - since->wall;
+    r->cpu_ms[s] += t.cpu - since->cpu;
+    *since = t;
+}
+
+bool job_open(job *j, const options *o, log_t *log, error *e)
+{
+    *j = (job){.o = o, .log = log, .threads = o->threads > 0 ? o->threads : threads_default()};
+    return gpu_open(&j->g, o->device, log, e);
+}
+
+void job_close(job *j)
+{
+    gpu_image_free(&j->env_image);
+    if (j->env_loaded) environment_free(&j->env);
+    gpu_close(&j->g);
+}
+
+static resolve_options resolve_options_of(const options *o)
+{
+    resolve_options r = {.view_layer = o->view_layer};
+    for (int i = 0; i < ROLE_COUNT; i++) r.names[i] = o->role_names[i];
+    if (o->depth_kind) r.depth = strcmp(o->depth_kind, "radial") == 0 ? DEPTH_RADIAL : DEPTH_PLANAR;
+    if (o->albedo_kind) r.albedo = strcmp(o->albedo_kind, "base") == 0 ? ALBEDO_BASE : ALBEDO_DIFFUSE;
+    return r;
+}
+
+// The channels that will be looked at; with --keep all, every one of them, for they are written again.
+static void want_channels(const job *j, exr_file *file, const resolution *r)
+{
+    for (int p = 0; !j->o->keep_none && p < file->part_count; p++)
+        for (int c = 0; c < file->parts[p].channel_count; c++) file->parts[p].channels[c].wanted = true;
+    for (int i = 0; i < ROLE_COUNT; i++)
+        for (int k = 0; k < r->components[i]; k++) {
+            channel_ref ref = r->channels[i][k];
+            if (ref.part >= 0) file->parts[ref.part].channels[ref.channel].wanted = true;
+        }
+}
+
+static bool read_frame(job *j, const char *input, frame_result *r, error *e)
+{
+    stopwatch t = read_clocks();
+    resolve_options ro = resolve_options_of(j->o);
+    if (!exr_file_open(input, &r->file, e) || !resolve_channels(r->file, &ro, &r->resolution, j->log, e) ||
+        !plan_make(j->o, r->file, &r->resolution, &r->plan, j->log, e) || !output_check_names(j->o, r->file, &r->plan, e))
+        return false;
+    want_channels(j, r->file, &r->resolution);
+    if (!exr_file_load(r->file, j->threads, e)) return false;
+    lap(r, STAGE_READ, &t);
+    gbuffer_options g = {
+        .need = r->plan.need, .camera_file = j->o->camera_file, .fov = j->o->fov, .ortho = j->o->ortho, .threads = j->threads};
+    bool ok = gbuffer_build(r->file, &r->resolution, &g, &r->gb, j->log, e);
+    lap(r, STAGE_RESOLVE, &t);
+    return ok;
+}
+
+static void describe(const job *j, const frame_result *r)
+{
+    char text[320];
+    for (int i = 0; i < ROLE_COUNT; i++) {
+        if (!r->resolution.components[i]) continue;
+        resolve_describe(r->file, &r->resolution, (role)i, text, sizeof text);
+        log_info(j->log, "%s", text);
+    }
+    const camera *c = &r->gb.camera;
+    static const char *sources[] = {"option", "fit of the position pass", "file header", "fit of one plane"};
+    log_info(j->log, "camera: %s, from %s, focal %.3f x %.3f %s, centre %.3f %.3f, residual %.4g px, %.1f %% of pixels in place",
+             c->kind == CAMERA_ORTHOGRAPHIC ? "orthographic" : "perspective", sources[c->source], c->fx, c->fy,
+             c->kind == CAMERA_ORTHOGRAPHIC ? "px per unit" : "px", c->cx, c->cy, c->residual, 100.0 * c->inliers);
+    for (int i = 0; i < r->gb.evidence_count; i++) log_info(j->log, "measured: %s", r->gb.evidence[i]);
+    log_info(j->log, "surfaces: %zu of %zu pixels", r->gb.valid, (size_t)r->gb.width * (size_t)r->gb.height);
+    log_info(j->log, "radius: %g scene units%s; thickness %g", r->set.radius, j->o->radius_unit == RADIUS_AUTO ? " (auto)" : "",
+             r->set.thickness);
+    for (int i = 0; i < r->plan.step_count; i++)
+        log_info(j->log, "pass %s: %s (%s)", r->plan.steps[i].pass, r->plan.steps[i].runs ? "runs" : "does not run",
+                 r->plan.steps[i].why);
+}
+
+// The environment is prepared with the first frame, because its default up axis is the renderer's.
+static bool prepare_light(job *j, const frame_result *r, error *e)
+{
+    if (!r->plan.light || j->env_loaded) return true;
+    bool up_z = j->o->env_up ? j->o->env_up == 'z' : r->resolution.up_is_z;
+    env_options eo = {
+        .path = j->o->env, .up_z = up_z, .rotate_degrees = j->o->env_rotate, .scale = j->o->env_scale, .threads = j->threads};
+    if (!environment_load(&eo, &j->env, j->log, e)) return false;
+    j->env_loaded = true;
+    if (j->o->env)
+        log_info(j->log, "environment: %s, %c up, mean radiance %.3g %.3g %.3g", j->o->env, up_z ? 'z' : 'y', j->env.mean[0],
+                 j->env.mean[1], j->env.mean[2]);
+    else
+        log_warn(j->log, "white", "no --env: radiance is that of a white environment of radiance 1");
+    return pass_upload_environment(&j->g, &j->env, &j->env_image, e);
+}
+
+static bool check_world(const job *j, const frame_result *r, error *e)
+{
+    bool camera_frame = j->o->env_frame && strcmp(j->o->env_frame, "camera") == 0;
+    if (!j->o->env || !r->plan.light || camera_frame || r->gb.camera.has_world || r->gb.valid == 0) return true;
+    return err_set(
+        e, ERR_INPUT, r->file->path, NULL,
+        "--env needs world directions, and this frame's camera rotation is unknown; use --env-frame camera or --camera FILE");
+}
+
+static double median_depth(const gbuffer *gb);
+
+static double radius_of(const options *o, const gbuffer *gb)
+{
+    if (o->radius_unit == RADIUS_WORLD) return o->radius;
+    if (o->radius_unit == RADIUS_AUTO) return gbuffer_auto_radius(gb);
+    // Pixels are turned into one world distance at the frame's median depth, so that the radius is the same on all surfaces.
+    double per_unit = gb->camera.fx;
+    return gb->camera.kind == CAMERA_ORTHOGRAPHIC ? o->radius / per_unit : o->radius * median_depth(gb) / per_unit;
+}
+
+static int by_value(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+// Of at most a few thousand evenly spaced surfaces: enough for a scale.
+static double median_depth(const gbuffer *gb)
+{
+    enum { MOST = 4096 };
+    float depths[MOST];
+    int n = 0;
+    size_t count = (size_t)gb->width * (size_t)gb->height, stride = gb->valid / MOST + 1, seen = 0;
+    for (size_t i = 0; i < count && n < MOST; i++)
+        if (gb->depth[i] > 0.0f && seen++ % stride == 0) depths[n++] = gb->depth[i];
+    if (n == 0) return 1.0;
+    qsort(depths, (size_t)n, sizeof *depths, by_value);
+    return depths[n / 2];
+}
+
+static pass_settings settings_of(const job *j, const frame_result *r)
+{
+    const options *o = j->o;
+    const method *m = r->plan.method;
+    double radius = radius_of(o, &r->gb), share = o->thickness < 0.0 ? m->thickness : o->thickness;
+    bool beauty = r->resolution.components[ROLE_BEAUTY] > 0;
+    return (pass_settings){
+        .radius = radius,
+        .thickness = share * radius,
+        .samples = o->samples > 0 ? o->samples : m->samples,
+        .blur = o->blur < 0 ? m->blur : o->blur,
+        .scale = o->scale,
+        .contrast = o->contrast,
+        .env_level = o->env_lod,
+        .bounce_strength = o->bounce_strength,
+        .amount = o->amount,
+        .visibility_mode = r->plan.visibility_mode,
+        .base_albedo = r->resolution.albedo == ALBEDO_BASE,
+        .averaged_albedo = convention_named(r->resolution.convention)->normals_averaged,
+        .background = beauty   ? 1
+                      : o->env ? 2
+                               : 0,
+        .relight = r->plan.relight,
+        .bounce_in_composite = r->plan.bounce_in_composite,
+    };
+}
+
+bool frame_run(job *j, const char *input, const char *output, frame_result *r, error *e)
+{
+    *r = (frame_result){0};
+    if (exr_same_file(input, output))
+        return err_set(e, ERR_USAGE, output, NULL, "the output is the input file; name another output, so that nothing is lost");
+    if (!read_frame(j, input, r, e)) return false;
+    if (r->gb.valid == 0) log_warn(j->log, "empty", "%s: no pixel has a surface; the layers are neutral", input);
+    r->set = settings_of(j, r);
+    describe(j, r);
+    if (!check_world(j, r, e) || !prepare_light(j, r, e)) return false;
+    if (!filter_frame(j, r, e)) return false;
+    stopwatch t = read_clocks();
+    if (!output_write(j, r, output, e)) return false;
+    lap(r, STAGE_WRITE, &t);
+    if (r->clamped)
+        log_warn(j->log, "clamped", "%zu samples were beyond what half can hold and were clamped; --float keeps them",
+                 r->clamped);
+    return true;
+}
+
+void frame_free(frame_result *r)
+{
+    for (int i = 0; i < LAYER_COUNT; i++) free(r->layers[i]);
+    gbuffer_free(&r->gb);
+    exr_file_close(r->file);
+    *r = (frame_result){0};
+}

@@ -1,0 +1,47 @@
+// One frame: read, resolve, plan, filter, write.
+#ifndef SSDO_PIPELINE_FRAME_H
+#define SSDO_PIPELINE_FRAME_H
+
+#include "base/log.h"
+#include "cli/options.h"
+#include "gbuffer/gbuffer.h"
+#include "gpu/gpu.h"
+#include "light/environment.h"
+#include "passes/pass.h"
+#include "pipeline/plan.h"
+
+// What lives for all frames of a run: options, context, environment.
+typedef struct job {
+    const options *o;
+    log_t *log;
+    int threads;
+    gpu g;
+    bool env_loaded; // the environment needs the first frame's renderer for its default up axis
+    environment env;
+    gpu_image env_image;
+} job;
+
+typedef enum stage { STAGE_READ, STAGE_RESOLVE, STAGE_PASSES, STAGE_READ_BACK, STAGE_WRITE, STAGE_COUNT } stage;
+
+// What one frame did, for -v and --report.
+typedef struct frame_result {
+    exr_file *file; // the input, open
+    resolution resolution;
+    gbuffer gb;
+    plan plan;
+    pass_settings set;
+    double wall_ms[STAGE_COUNT], cpu_ms[STAGE_COUNT];
+    pass_timing timings[PASS_MAX_TIMINGS];
+    int timing_count;
+    size_t clamped;             // samples of ours that a half could not hold
+    float *layers[LAYER_COUNT]; // width * height * channels, interleaved; NULL where not made
+    bool second_part;
+} frame_result;
+
+bool job_open(job *j, const options *o, log_t *log, error *e);
+void job_close(job *j);
+
+bool frame_run(job *j, const char *input, const char *output, frame_result *result, error *e);
+void frame_free(frame_result *result);
+
+#endif

@@ -1,0 +1,32 @@
+// The layers we write, by name: DESIGN.md's contracts.
+#ifndef SSDO_PIPELINE_LAYERS_H
+#define SSDO_PIPELINE_LAYERS_H
+
+#include <stdbool.h>
+
+#include "base/error.h"
+
+typedef enum layer_id {
+    LAYER_OCCLUSION,
+    LAYER_RADIANCE,
+    LAYER_INDIRECT,
+    LAYER_COMPOSITE,
+    LAYER_VISIBILITY,
+    LAYER_SPECULAR,
+    LAYER_DIFFUSE,
+    LAYER_COUNT
+} layer_id;
+
+typedef struct layer_info {
+    const char *name;
+    const char *channels; // one letter each, "RGB"
+    bool by_default;
+} layer_info;
+
+extern const layer_info layer_table[LAYER_COUNT];
+
+// "occlusion,radiance" to a bit set (1 << layer). NULL gives the default four. ERR_USAGE names an unknown layer and those there
+// are.
+bool layers_parse(const char *list, unsigned *set, error *e);
+
+#endif

@@ -1,0 +1,252 @@
+#include "pipeline/output.h"
+
+#include <OpenEXR/openexr.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "exr/write.h"
+
+enum { MAX_OURS = LAYER_COUNT * 4 + 1, NAME_SIZE = 96, MAX_ATTRS = 8 };
+
+// Everything exr_write borrows.
+typedef struct assembly {
+    exr_out_part *parts;
+    int part_count;
+    char names[MAX_OURS][NAME_SIZE];
+    exr_out_channel ours[MAX_OURS];
+    void *data[MAX_OURS]; // owned
+    int our_count;
+    exr_out_attr attrs[MAX_ATTRS];
+    int attr_count;
+    char args[1024], camera[512], environment[600];
+} assembly;
+
+static void channel_name(const options *o, layer_id l, int k, char *name)
+{
+    snprintf(name, NAME_SIZE, "%s%s.%c", o->prefix ? o->prefix : "", layer_table[l].name, layer_table[l].channels[k]);
+}
+
+static bool is_ours(const options *o, const plan *p, const char *channel)
+{
+    char name[NAME_SIZE];
+    for (int l = 0; l < LAYER_COUNT; l++)
+        for (int k = 0; p->layers & 1u << l && layer_table[l].channels[k]; k++) {
+            channel_name(o, (layer_id)l, k, name);
+            if (strcmp(name, channel) == 0) return true;
+        }
+    snprintf(name, sizeof name, "%scomposite.A", o->prefix ? o->prefix : "");
+    return p->layers & 1u << LAYER_COMPOSITE && strcmp(name, channel) == 0;
+}
+
+bool output_check_names(const options *o, const exr_file *file, const plan *p, error *e)
+{
+    for (int i = 0; !o->keep_none && i < file->part_count; i++)
+        for (int c = 0; c < file->parts[i].channel_count; c++)
+            if (is_ours(o, p, file->parts[i].channels[c].name) && !exr_attr_exists(file, i, "ssdo/version"))
+                return err_set(e, ERR_INPUT, file->path, file->parts[i].channels[c].name,
+                               "the input already has a channel that we would write, and it is not ours; use --prefix to name "
+                               "ours otherwise");
+    return true;
+}
+
+static int compression_of(const options *o, const exr_part *part)
+{
+    static const struct {
+        const char *name;
+        exr_compression_t value;
+    } table[] = {{"none", EXR_COMPRESSION_NONE},
+                 {"rle", EXR_COMPRESSION_RLE},
+                 {"zips", EXR_COMPRESSION_ZIPS},
+                 {"zip", EXR_COMPRESSION_ZIP},
+                 {"piz", EXR_COMPRESSION_PIZ}};
+    for (size_t i = 0; o->compression && i < sizeof table / sizeof *table; i++)
+        if (strcmp(table[i].name, o->compression) == 0) return table[i].value;
+    return part->lossy ? EXR_COMPRESSION_ZIP : part->compression;
+}
+
+// A picture that stands beside a float beauty keeps its precision, so that an untouched beauty comes back bit for bit.
+static sample_type type_of(const job *j, const frame_result *r, layer_id l)
+{
+    if (j->o->output_float) return SAMPLE_FLOAT;
+    channel_ref beauty = r->resolution.channels[ROLE_BEAUTY][0];
+    if (l == LAYER_COMPOSITE && !r->plan.relight && r->resolution.components[ROLE_BEAUTY] > 0)
+        return r->file->parts[beauty.part].channels[beauty.channel].type;
+    return SAMPLE_HALF;
+}
+
+// Under the name that stands in a->names already.
+static bool add_channel(assembly *a, frame_result *r, const float *v, size_t stride, sample_type type, error *e)
+{
+    size_t n = (size_t)r->gb.width * (size_t)r->gb.height;
+    void *data = mem_pixels(n, sample_size(type), e);
+    if (!data) return false;
+    if (type == SAMPLE_HALF)
+        r->clamped += exr_to_half(v, stride, n, data);
+    else
+        for (size_t i = 0; i < n; i++) ((float *)data)[i] = v[i * stride];
+    a->data[a->our_count] = data;
+    a->ours[a->our_count] = (exr_out_channel){a->names[a->our_count], type, data};
+    a->our_count++;
+    return true;
+}
+
+static bool add_layers(assembly *a, const job *j, frame_result *r, error *e)
+{
+    for (int l = 0; l < LAYER_COUNT; l++) {
+        size_t channels = strlen(layer_table[l].channels);
+        for (size_t k = 0; r->layers[l] && k < channels; k++) {
+            channel_name(j->o, (layer_id)l, (int)k, a->names[a->our_count]);
+            if (!add_channel(a, r, r->layers[l] + k, channels, type_of(j, r, (layer_id)l), e)) return false;
+        }
+    }
+    if (!r->layers[LAYER_COMPOSITE] || !r->resolution.components[ROLE_ALPHA]) return true;
+    // The composite's alpha is the input's own, bits and type.
+    channel_ref ref = r->resolution.channels[ROLE_ALPHA][0];
+    const exr_channel *alpha = &r->file->parts[ref.part].channels[ref.channel];
+    snprintf(a->names[a->our_count], NAME_SIZE, "%scomposite.A", j->o->prefix ? j->o->prefix : "");
+    a->ours[a->our_count] = (exr_out_channel){a->names[a->our_count], alpha->type, alpha->data};
+    a->our_count++;
+    return true;
+}
+
+static exr_out_attr *add_attr(assembly *a, const char *name, exr_attr_kind kind)
+{
+    exr_out_attr *attr = &a->attrs[a->attr_count++];
+    *attr = (exr_out_attr){.name = name, .kind = kind};
+    return attr;
+}
+
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+static void add_attributes(assembly *a, const job *j, const frame_result *r)
+{
+    static const char *sources[] = {"option", "fit", "header", "plane"};
+    const camera *c = &r->gb.camera;
+    add_attr(a, "ssdo/version", EXR_OUT_STRING)->string = SSDO_VERSION;
+    options_record(j->o, a->args, sizeof a->args);
+    add_attr(a, "ssdo/args", EXR_OUT_STRING)->string = a->args;
+    snprintf(a->camera, sizeof a->camera, "%s focal %.9g %.9g centre %.9g %.9g source %s",
+             c->kind == CAMERA_ORTHOGRAPHIC ? "orthographic" : "perspective", c->fx, c->fy, c->cx, c->cy, sources[c->source]);
+    add_attr(a, "ssdo/camera", EXR_OUT_STRING)->string = a->camera;
+    add_attr(a, "ssdo/radius", EXR_OUT_FLOAT)->number = r->set.radius;
+    add_attr(a, "ssdo/method", EXR_OUT_STRING)->string = r->plan.method->name;
+    snprintf(a->environment, sizeof a->environment, "%s", j->o->env ? base_name(j->o->env) : "white, radiance 1");
+    if (r->plan.light) add_attr(a, "ssdo/environment", EXR_OUT_STRING)->string = a->environment;
+    add_attr(a, "ssdo/premult", EXR_OUT_STRING)->string =
+        "composite: premultiplied; occlusion, visibility: ratios; radiance, indirect: per unit coverage";
+}
+
+// The input's channels of one part that are passed through, appended to out.
+static int keep_channels(const options *o, const plan *p, const exr_part *part, exr_out_channel *out)
+{
+    int n = 0;
+    for (int c = 0; c < part->channel_count; c++)
+        if (!is_ours(o, p, part->channels[c].name))
+            out[n++] = (exr_out_channel){part->channels[c].name, part->channels[c].type, part->channels[c].data};
+    return n;
+}
+
+static bool can_merge(const exr_file *f)
+{
+    for (int i = 1; i < f->part_count; i++) {
+        const exr_part *p = &f->parts[i], *first = &f->parts[0];
+        if (!box2_equal(p->data_window, first->data_window) || !box2_equal(p->display_window, first->display_window))
+            return false;
+        for (int k = 0; k < i; k++)
+            for (int a = 0; a < p->channel_count; a++)
+                for (int b = 0; b < f->parts[k].channel_count; b++)
+                    if (strcmp(p->channels[a].name, f->parts[k].channels[b].name) == 0) return false;
+    }
+    return true;
+}
+
+static exr_out_part part_like(const options *o, const exr_file *f, int index)
+{
+    const exr_part *p = &f->parts[index];
+    return (exr_out_part){.name = p->name,
+                          .view = p->view,
+                          .data_window = p->data_window,
+                          .display_window = p->display_window,
+                          .pixel_aspect = p->pixel_aspect,
+                          .compression = compression_of(o, p),
+                          .attributes_from = f,
+                          .attributes_part = index};
+}
+
+static bool room(exr_out_part *part, int count, error *e)
+{
+    part->channels = mem_zero((size_t)count, sizeof *part->channels, e);
+    return part->channels != NULL;
+}
+
+static int total_channels(const exr_file *f)
+{
+    int n = 0;
+    for (int i = 0; i < f->part_count; i++) n += f->parts[i].channel_count;
+    return n;
+}
+
+// Our channels go to the end of the last part.
+static void append_ours(assembly *a, exr_out_part *part)
+{
+    for (int i = 0; i < a->our_count; i++) part->channels[part->channel_count++] = a->ours[i];
+    part->attributes = a->attrs;
+    part->attribute_count = a->attr_count;
+}
+
+static bool make_parts(assembly *a, const job *j, frame_result *r, error *e)
+{
+    const exr_file *f = r->file;
+    int main_part = r->resolution.main_part;
+    bool merge = j->o->keep_none || can_merge(f);
+    a->parts = mem_zero((size_t)f->part_count + 1, sizeof *a->parts, e);
+    if (!a->parts) return false;
+    if (merge) {
+        exr_out_part *only = &a->parts[a->part_count++];
+        *only = part_like(j->o, f, main_part);
+        if (f->part_count > 1) only->name = only->view = NULL;
+        if (!room(only, total_channels(f) + a->our_count, e)) return false;
+        for (int i = 0; !j->o->keep_none && i < f->part_count; i++)
+            only->channel_count += keep_channels(j->o, &r->plan, &f->parts[i], only->channels + only->channel_count);
+        append_ours(a, only);
+        return true;
+    }
+    for (int i = 0; i < f->part_count; i++) {
+        if (strcmp(f->parts[i].name, "ssdo") == 0 && exr_attr_exists(f, i, "ssdo/version")) continue; // an earlier run's layers
+        exr_out_part *part = &a->parts[a->part_count++];
+        *part = part_like(j->o, f, i);
+        if (!room(part, f->parts[i].channel_count, e)) return false;
+        part->channel_count = keep_channels(j->o, &r->plan, &f->parts[i], part->channels);
+    }
+    exr_out_part *mine = &a->parts[a->part_count++];
+    *mine = part_like(j->o, f, main_part);
+    mine->name = "ssdo";
+    mine->attributes_from = NULL;
+    if (!room(mine, a->our_count, e)) return false;
+    append_ours(a, mine);
+    r->second_part = true;
+    log_warn(j->log, "second-part",
+             "%s: its parts differ in window or share channel names, so our layers go into a part named 'ssdo'", f->path);
+    return true;
+}
+
+bool output_write(job *j, frame_result *r, const char *path, error *e)
+{
+    assembly *a = mem_zero(1, sizeof *a, e);
+    bool ok = a && add_layers(a, j, r, e);
+    if (ok) {
+        add_attributes(a, j, r);
+        ok = make_parts(a, j, r, e) && exr_write(path, a->parts, a->part_count, j->threads, e);
+    }
+    for (int i = 0; a && i < MAX_OURS; i++) free(a->data[i]);
+    for (int i = 0; a && i < a->part_count; i++) free(a->parts[i].channels);
+    if (a) free(a->parts);
+    free(a);
+    return ok;
+}

@@ -1,0 +1,16 @@
+// Assembling the output file: the input's channels as they were, our layers beside them.
+#ifndef SSDO_PIPELINE_OUTPUT_H
+#define SSDO_PIPELINE_OUTPUT_H
+
+#include "pipeline/frame.h"
+
+// Input channels that already carry names of ours are replaced if the file says we made them (ssdo/version), else ERR_INPUT
+// naming
+// --prefix. Called before any pixel is read, so that a long job does not fail at its end.
+bool output_check_names(const options *o, const exr_file *file, const plan *p, error *e);
+
+// Writes the file. A single-part input stays single-part. Parts of a multi-part input are merged into one where windows and names
+// allow; otherwise they are kept as they are and our layers go into a part of their own, named "ssdo".
+bool output_write(job *j, frame_result *r, const char *path, error *e);
+
+#endif

@@ -1,0 +1,133 @@
+#include "pipeline/plan.h"
+
+#include <string.h>
+
+#include "gbuffer/gbuffer.h"
+
+typedef struct inputs {
+    bool env, albedo, beauty, roughness, emission, diffuse_direct, diffuse_indirect;
+} inputs;
+
+static inputs inputs_of(const options *o, const resolution *r)
+{
+    return (inputs){
+        .env = o->env != NULL,
+        .albedo = r->components[ROLE_ALBEDO] > 0,
+        .beauty = r->components[ROLE_BEAUTY] > 0,
+        .roughness = r->components[ROLE_ROUGHNESS] > 0,
+        .emission = r->components[ROLE_EMISSION] > 0,
+        .diffuse_direct = r->components[ROLE_DIFFUSE_DIRECT] > 0,
+        .diffuse_indirect = r->components[ROLE_DIFFUSE_INDIRECT] > 0,
+    };
+}
+
+static bool asked(const plan *p, layer_id l) { return p->layers & 1u << l; }
+
+// Drops a layer that cannot be made, or refuses when it was asked for by name.
+static bool cannot(plan *p, const options *o, const exr_file *file, layer_id l, const char *channel, const char *because,
+                   log_t *log, error *e)
+{
+    if (!asked(p, l)) return true;
+    const char *name = layer_table[l].name;
+    if (o->layers) return err_set(e, ERR_INPUT, file->path, channel, "layer '%s' cannot be made: %s", name, because);
+    p->layers &= ~(1u << l);
+    log_warn(log, name, "layer '%s' is left out: %s", name, because);
+    return true;
+}
+
+static const char *bounce_of(const plan *p, const options *o)
+{
+    const char *name = o->bounce ? o->bounce : p->method->bounce;
+    return name && strcmp(name, "none") != 0 ? name : NULL;
+}
+
+static bool drop_impossible(plan *p, const options *o, const exr_file *file, const inputs *in, log_t *log, error *e)
+{
+    if (!bounce_of(p, o) && !cannot(p, o, file, LAYER_INDIRECT, NULL,
+                                    "this method has no bounce of its own or --bounce is none; try --bounce ssdo", log, e))
+        return false;
+    const char *no_albedo = "no albedo channel was found; name it with --albedo";
+    if (p->relight && !in->albedo &&
+        !(cannot(p, o, file, LAYER_INDIRECT, "albedo", no_albedo, log, e) &&
+          cannot(p, o, file, LAYER_COMPOSITE, "albedo", no_albedo, log, e) &&
+          cannot(p, o, file, LAYER_DIFFUSE, "albedo", no_albedo, log, e)))
+        return false;
+    if (!in->roughness &&
+        !cannot(p, o, file, LAYER_SPECULAR, "roughness", "no roughness channel was found; name it with --roughness", log, e))
+        return false;
+    if (!p->relight &&
+        !cannot(p, o, file, LAYER_DIFFUSE, NULL, "the beauty is not relit; give an environment with --env", log, e))
+        return false;
+    if (!in->env && !cannot(p, o, file, LAYER_SPECULAR, NULL, "there is no environment to reflect; give one with --env", log, e))
+        return false;
+    return true;
+}
+
+static void step(plan *p, const char *pass, bool runs, const char *why, const char *why_not)
+{
+    p->steps[p->step_count++] = (plan_step){pass, runs, runs ? why : why_not};
+}
+
+// The bounce goes into a beauty only where it does not already hold one.
+static bool bounce_belongs(const options *o, const inputs *in, bool relight, log_t *log)
+{
+    if (relight) return true;
+    if (!in->albedo) return false;
+    if (in->diffuse_direct) return !in->diffuse_indirect;
+    if (!o->bounce || strcmp(o->bounce, "none") == 0) return false;
+    log_warn(log, "double-bounce", "the beauty may already hold indirect light and occlusion; --bounce adds to it all the same");
+    return true;
+}
+
+static void list_steps(plan *p, const options *o, const inputs *in)
+{
+    step(p, p->method->name, true, "occlusion is always made", "");
+    step(p, "irradiance", p->irradiance, "the method gives no direction: SH irradiance x occlusion",
+         p->method->fills_radiance ? "the method makes radiance itself" : "no layer needs light");
+    step(p, "blur", p->blur, "noise of the sample pattern", "--blur none");
+    step(p, "look", p->look, "scale, contrast and the bounds of a scalar method", "scale and contrast are 1");
+    step(p, "bounce", p->bounce, "indirect light", !in->albedo && p->relight ? "no albedo" : "no layer needs it");
+    step(p, "edges", p->edges, "partly covered pixels", "no layer but data of whole pixels");
+    step(p, "specular", p->specular, "roughness and environment",
+         !in->roughness ? "no roughness"
+         : !in->env     ? "no environment"
+                        : "no layer needs it");
+    step(p, "composite", p->composite, p->relight ? "lit by us" : "the beauty, occluded", "no layer needs it");
+    step(p, "environment", p->light, o->env ? "--env" : "white environment of radiance 1", "no layer needs light");
+}
+
+bool plan_make(const options *o, const exr_file *file, const resolution *r, plan *p, log_t *log, error *e)
+{
+    *p = (plan){.method = method_find(o->method ? o->method : methods[METHOD_DEFAULT].name)};
+    if (!p->method)
+        return err_set(e, ERR_USAGE, NULL, NULL, "--method: there is no method '%s'; the methods are %s", o->method,
+                       method_names());
+    if (!layers_parse(o->layers, &p->layers, e)) return false;
+    inputs in = inputs_of(o, r);
+    p->relight = in.env || !in.beauty;
+    if (!drop_impossible(p, o, file, &in, log, e)) return false;
+
+    p->composite = asked(p, LAYER_COMPOSITE) || asked(p, LAYER_DIFFUSE);
+    p->visibility_mode = o->mode == MODE_VISIBILITY;
+    p->bounce_in_composite = p->composite && bounce_of(p, o) && bounce_belongs(o, &in, p->relight, log);
+    p->bounce = asked(p, LAYER_INDIRECT) || p->bounce_in_composite;
+    bool relit = p->composite && p->relight;
+    bool light = asked(p, LAYER_RADIANCE) || (relit && !p->visibility_mode) || (p->bounce && p->relight);
+    p->want_radiance = light && p->method->fills_radiance;
+    p->want_visibility = asked(p, LAYER_VISIBILITY) || (relit && p->visibility_mode);
+    p->irradiance = light && !p->method->fills_radiance;
+    p->specular = in.roughness && in.env && (relit || asked(p, LAYER_SPECULAR));
+    p->light = light || p->want_visibility || p->specular;
+    p->blur = (o->blur < 0 ? p->method->blur : o->blur) > 0;
+    p->look = o->contrast != 1.0 || o->scale != 1.0 || !p->method->fills_radiance;
+    p->edges = true;
+
+    p->need = NEED_COVERAGE;
+    if (in.albedo && (p->bounce || p->composite)) p->need |= NEED_ALBEDO;
+    if (in.beauty && (p->composite || (p->bounce && !p->relight))) p->need |= NEED_BEAUTY;
+    if (p->specular) p->need |= NEED_MATERIAL;
+    if (in.emission && relit) p->need |= NEED_EMISSION;
+    if (in.diffuse_direct && p->composite && !p->relight) p->need |= NEED_DIFFUSE_LIGHT;
+    list_steps(p, o, &in);
+    return true;
+}

@@ -1,0 +1,126 @@
+#include "pipeline/report.h"
+
+#include <errno.h>
+#include <json-c/json.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/outfile.h"
+
+static void put(json_object *o, const char *key, json_object *value) { json_object_object_add(o, key, value); }
+static void put_text(json_object *o, const char *key, const char *s) { put(o, key, s ? json_object_new_string(s) : NULL); }
+static void put_number(json_object *o, const char *key, double v)
+{
+    put(o, key, v - v == 0.0 ? json_object_new_double(v) : NULL);
+}
+
+static json_object *channels_of(const frame_result *r)
+{
+    json_object *o = json_object_new_object();
+    char text[320];
+    for (int i = 0; i < ROLE_COUNT; i++) {
+        if (!r->resolution.components[i]) continue;
+        resolve_describe(r->file, &r->resolution, (role)i, text, sizeof text);
+        const char *colon = strstr(text, ": ");
+        put_text(o, role_name((role)i), colon ? colon + 2 : text);
+    }
+    return o;
+}
+
+static json_object *camera_of(const frame_result *r)
+{
+    static const char *sources[] = {"option", "fit", "header", "plane"};
+    const camera *c = &r->gb.camera;
+    json_object *o = json_object_new_object(), *focal = json_object_new_array(), *centre = json_object_new_array();
+    put_text(o, "kind", c->kind == CAMERA_ORTHOGRAPHIC ? "orthographic" : "perspective");
+    put_text(o, "source", sources[c->source]);
+    json_object_array_add(focal, json_object_new_double(c->fx));
+    json_object_array_add(focal, json_object_new_double(c->fy));
+    json_object_array_add(centre, json_object_new_double(c->cx));
+    json_object_array_add(centre, json_object_new_double(c->cy));
+    put(o, "focal_px", focal);
+    put(o, "centre_px", centre);
+    put_number(o, "residual_px", c->residual);
+    put_number(o, "pixels_in_place", c->inliers);
+    return o;
+}
+
+static json_object *passes_of(const frame_result *r)
+{
+    json_object *list = json_object_new_array();
+    for (int i = 0; i < r->plan.step_count; i++) {
+        json_object *o = json_object_new_object();
+        put_text(o, "pass", r->plan.steps[i].pass);
+        put(o, "runs", json_object_new_boolean(r->plan.steps[i].runs));
+        put_text(o, "why", r->plan.steps[i].why);
+        json_object_array_add(list, o);
+    }
+    return list;
+}
+
+static json_object *time_of(const char *name, double wall, double cpu)
+{
+    json_object *o = json_object_new_object();
+    put_text(o, "stage", name);
+    put_number(o, "wall_ms", wall);
+    put_number(o, "cpu_ms", cpu);
+    return o;
+}
+
+static json_object *times_of(const frame_result *r)
+{
+    static const char *names[STAGE_COUNT] = {"read", "resolve", "passes", "read back", "write"};
+    json_object *list = json_object_new_array();
+    for (int i = 0; i < STAGE_COUNT; i++) json_object_array_add(list, time_of(names[i], r->wall_ms[i], r->cpu_ms[i]));
+    for (int i = 0; i < r->timing_count; i++)
+        json_object_array_add(list, time_of(r->timings[i].name, r->timings[i].wall_ms, r->timings[i].cpu_ms));
+    return list;
+}
+
+static json_object *report_of(const job *j, const frame_result *r, const char *output)
+{
+    json_object *o = json_object_new_object(), *evidence = json_object_new_array(), *layers = json_object_new_array(),
+                *warnings = json_object_new_array();
+    double pixels = (double)r->gb.width * r->gb.height;
+    put_text(o, "version", SSDO_VERSION);
+    put_text(o, "input", r->file->path);
+    put_text(o, "output", output);
+    put_text(o, "device", j->g.renderer);
+    put_text(o, "convention", r->resolution.convention);
+    put(o, "channels", channels_of(r));
+    for (int i = 0; i < r->gb.evidence_count; i++) json_object_array_add(evidence, json_object_new_string(r->gb.evidence[i]));
+    put(o, "evidence", evidence);
+    put(o, "camera", camera_of(r));
+    put_text(o, "method", r->plan.method->name);
+    put(o, "samples", json_object_new_int(r->set.samples));
+    put_number(o, "radius", r->set.radius);
+    put_number(o, "thickness", r->set.thickness);
+    put_number(o, "valid_share", pixels > 0 ? (double)r->gb.valid / pixels : 0.0);
+    put_number(o, "off_ray_share", r->gb.valid ? (double)r->gb.off_ray / (double)r->gb.valid : 0.0);
+    for (int l = 0; l < LAYER_COUNT; l++)
+        if (r->layers[l]) json_object_array_add(layers, json_object_new_string(layer_table[l].name));
+    put(o, "layers", layers);
+    put(o, "passes", passes_of(r));
+    put(o, "times", times_of(r));
+    put(o, "clamped_samples", json_object_new_int64((int64_t)r->clamped));
+    for (int i = 0; i < j->log->warning_count; i++) json_object_array_add(warnings, json_object_new_string(j->log->warnings[i]));
+    put(o, "warnings", warnings);
+    return o;
+}
+
+bool report_write(const job *j, const frame_result *r, const char *output, const char *path, error *e)
+{
+    json_object *o = report_of(j, r, output);
+    const char *text =
+        json_object_to_json_string_ext(o, JSON_C_TO_STRING_PRETTY | JSON_C_TO_STRING_SPACED | JSON_C_TO_STRING_NOSLASHESCAPE);
+    outfile out = OUTFILE_NONE;
+    bool ok = outfile_begin(path, &out, e);
+    if (ok && (dprintf(out.fd, "%s\n", text) < 0))
+        ok = err_set(e, ERR_OUTPUT, path, NULL, "the report cannot be written: %s", strerror(errno));
+    if (ok)
+        ok = outfile_commit(&out, e);
+    else
+        outfile_abort(&out);
+    json_object_put(o);
+    return ok;
+}

@@ -1,0 +1,17 @@
+// The border between the program (C) and the module ssdo-images.so (C++): what images_shim.cpp exports and images.c looks up.
+//
+// Each returns 1, or 0 with a sentence in `message`. Memory that crosses is malloc'ed by the module and freed by the program.
+#ifndef SSDO_PLUGIN_IMAGES_ABI_H
+#define SSDO_PLUGIN_IMAGES_ABI_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef int (*images_read_float_fn)(const char *path, int part, int *width, int *height, int *channels, float **pixels,
+                                    char *message, size_t message_size);
+typedef int (*images_read_native_fn)(const char *path, int part, int count, const char *const *names, const int *types,
+                                     void **data, char *message, size_t message_size);
+typedef int (*images_write_png_fn)(const char *path, int width, int height, const uint8_t *rgb, char *message,
+                                   size_t message_size);
+
+#endif

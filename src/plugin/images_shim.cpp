@@ -1,0 +1,148 @@
+// The C++ side of plugin/images.h. See images_abi.h for the rules of the border: nothing may be thrown across it.
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <OpenImageIO/imageio.h>
+
+#include "plugin/images_abi.h"
+
+namespace
+{
+using namespace OIIO;
+
+constexpr int64_t max_pixels = 1 << 28;
+constexpr int max_channels = 1024;
+
+struct free_memory {
+    void operator()(void *p) const { std::free(p); }
+};
+using memory = std::unique_ptr<void, free_memory>;
+
+memory allocate(size_t size)
+{
+    memory p(std::malloc(size ? size : 1));
+    if (!p) throw std::runtime_error("out of memory");
+    return p;
+}
+
+void tell(char *message, size_t size, const std::string &text)
+{
+    std::string line = text.substr(0, text.find('\n'));
+    if (size) {
+        std::strncpy(message, line.c_str(), size - 1);
+        message[size - 1] = '\0';
+    }
+}
+
+// Runs `work`; whatever it throws becomes the message.
+template <class F> int guarded(char *message, size_t size, F work)
+{
+    try {
+        work();
+        return 1;
+    } catch (const std::exception &x) {
+        tell(message, size, x.what());
+    } catch (...) {
+        tell(message, size, "unknown failure in OpenImageIO");
+    }
+    return 0;
+}
+
+std::string reason(std::string said, const char *otherwise) { return said.empty() ? std::string(otherwise) : said; }
+
+std::unique_ptr<ImageInput> open_part(const char *path, int part)
+{
+    auto in = ImageInput::open(path);
+    if (!in) throw std::runtime_error(reason(OIIO::geterror(), "unknown format"));
+    if (!in->seek_subimage(part, 0)) throw std::runtime_error("it has no part " + std::to_string(part));
+    const ImageSpec &s = in->spec();
+    if (s.width < 1 || s.height < 1 || int64_t(s.width) * s.height > max_pixels || s.nchannels < 1 || s.nchannels > max_channels)
+        throw std::runtime_error("it is larger than what is read");
+    if (s.deep || s.depth > 1) throw std::runtime_error("it is deep or a volume");
+    return in;
+}
+
+void read_all(ImageInput &in, int part, TypeDesc type, void *to)
+{
+    if (!in.read_image(part, 0, 0, in.spec().nchannels, type, to))
+        throw std::runtime_error(reason(in.geterror(), "its pixels cannot be read"));
+}
+
+TypeDesc stored_type(int sample_type) // OpenEXR's numbers
+{
+    return sample_type == 0 ? TypeDesc::UINT32 : sample_type == 1 ? TypeDesc::HALF : TypeDesc::FLOAT;
+}
+
+// Takes channel c of interleaved pixels out. `size` is the bytes of its samples.
+memory extract(const std::vector<char> &pixels, size_t count, size_t stride, size_t offset, size_t size)
+{
+    memory plane = allocate(count * size);
+    const char *from = pixels.data() + offset;
+    char *to = static_cast<char *>(plane.get());
+    for (size_t i = 0; i < count; i++) std::memcpy(to + i * size, from + i * stride, size);
+    return plane;
+}
+
+void read_native(const char *path, int part, int count, const char *const *names, const int *types, void **data)
+{
+    auto in = open_part(path, part);
+    const ImageSpec spec = in->spec();
+    const size_t n = size_t(spec.width) * size_t(spec.height), stride = spec.pixel_bytes(true);
+    std::vector<char> pixels(n * stride);
+    read_all(*in, part, TypeDesc::UNKNOWN, pixels.data()); // UNKNOWN: as stored
+    std::vector<memory> planes(count);
+    for (int i = 0; i < count; i++) {
+        if (!names[i]) continue;
+        const int c = spec.channelindex(names[i]);
+        if (c < 0) throw std::runtime_error(std::string("channel ") + names[i] + " is not there");
+        const TypeDesc type = spec.channelformat(c);
+        if (type != stored_type(types[i])) throw std::runtime_error(std::string("channel ") + names[i] + " changed its type");
+        planes[i] = extract(pixels, n, stride, spec.pixel_bytes(0, c, true), type.size());
+    }
+    for (int i = 0; i < count; i++) data[i] = planes[i].release();
+}
+
+void write_png(const char *path, int width, int height, const uint8_t *rgb)
+{
+    auto out = ImageOutput::create("png");
+    if (!out) throw std::runtime_error(reason(OIIO::geterror(), "OpenImageIO was built without PNG"));
+    ImageSpec spec(width, height, 3, TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    if (!out->open(path, spec) || !out->write_image(TypeDesc::UINT8, rgb) || !out->close())
+        throw std::runtime_error(reason(out->geterror(), "unknown failure"));
+}
+} // namespace
+
+extern "C" {
+#define EXPORT __attribute__((visibility("default")))
+
+EXPORT int ssdo_images_read_float(const char *path, int part, int *width, int *height, int *channels, float **pixels,
+                                  char *message, size_t message_size)
+{
+    return guarded(message, message_size, [&] {
+        auto in = open_part(path, part);
+        const ImageSpec spec = in->spec();
+        memory p = allocate(size_t(spec.width) * size_t(spec.height) * size_t(spec.nchannels) * sizeof(float));
+        read_all(*in, part, TypeDesc::FLOAT, p.get());
+        *width = spec.width;
+        *height = spec.height;
+        *channels = spec.nchannels;
+        *pixels = static_cast<float *>(p.release());
+    });
+}
+
+EXPORT int ssdo_images_read_native(const char *path, int part, int count, const char *const *names, const int *types, void **data,
+                                   char *message, size_t message_size)
+{
+    return guarded(message, message_size, [&] { read_native(path, part, count, names, types, data); });
+}
+
+EXPORT int ssdo_images_write_png(const char *path, int width, int height, const uint8_t *rgb, char *message, size_t message_size)
+{
+    return guarded(message, message_size, [&] { write_png(path, width, height, rgb); });
+}
+}

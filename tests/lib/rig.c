@@ -1,0 +1,57 @@
+#include "rig.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+bool rig_open(rig *r, const env_options *env, error *e)
+{
+    *r = (rig){0};
+    options_defaults(&r->options);
+    log_init(&r->log, LOG_QUIET);
+    if (!job_open(&r->job, &r->options, &r->log, e)) return false;
+    if (!env) return true;
+    if (!environment_load(env, &r->job.env, &r->log, e)) return false;
+    r->job.env_loaded = true;
+    return pass_upload_environment(&r->job.g, &r->job.env, &r->job.env_image, e);
+}
+
+void rig_close(rig *r)
+{
+    job_close(&r->job);
+    log_free(&r->log);
+}
+
+pass_settings rig_settings(const method *m, double radius)
+{
+    return (pass_settings){.radius = radius,
+                           .thickness = INFINITY,
+                           .samples = m->samples,
+                           .scale = 1.0,
+                           .contrast = 1.0,
+                           .env_level = -1.0,
+                           .bounce_strength = 1.0,
+                           .amount = 1.0,
+                           .relight = true};
+}
+
+bool rig_run(rig *r, const gbuffer *gb, const method *m, const pass_settings *set, unsigned layers, frame_result *out, error *e)
+{
+    bool bounce = layers & 1u << LAYER_INDIRECT;
+    bool light = r->job.env_loaded && (bounce || layers & 1u << LAYER_RADIANCE);
+    *out = (frame_result){.gb = *gb, .set = *set};
+    out->plan = (plan){.method = m,
+                       .layers = layers,
+                       .want_radiance = light && m->fills_radiance,
+                       .want_visibility = layers & 1u << LAYER_VISIBILITY,
+                       .irradiance = light && !m->fills_radiance,
+                       .blur = set->blur > 0,
+                       .look = set->contrast != 1.0 || set->scale != 1.0 || !m->fills_radiance,
+                       .bounce = bounce};
+    return filter_frame(&r->job, out, e);
+}
+
+void rig_free_result(frame_result *r)
+{
+    for (int i = 0; i < LAYER_COUNT; i++) free(r->layers[i]);
+    *r = (frame_result){0};
+}

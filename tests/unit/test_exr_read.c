@@ -1,0 +1,223 @@
+// Files other programs made: tiled, mip-mapped, any line order, several parts, lossy compressions.
+// The C++ library is the reference: exrmaketiled -z none stores what it decodes, which leaves our reader little to do.
+#include <libgen.h>
+
+#include <OpenEXR/openexr.h>
+
+#include "exr_support.h"
+
+static char module_folder[4096];
+
+static int make_module_folder(void **state)
+{
+    char exe[4000] = "";
+    if (readlink("/proc/self/exe", exe, sizeof exe - 1) < 0) return -1;
+    snprintf(module_folder, sizeof module_folder, "%s/..", dirname(exe)); // build/tests/.. is where the module is built
+    setenv("SSDO_PLUGIN_DIR", module_folder, 0);
+    return make_scratch(state);
+}
+
+static bool have_module(void)
+{
+    char path[4300];
+    snprintf(path, sizeof path, "%s/ssdo-images.so", getenv("SSDO_PLUGIN_DIR"));
+    if (access(path, R_OK) == 0) return true;
+    print_message("note: %s is not built, so this is not checked\n", path);
+    return false;
+}
+
+static void write_image(const image *im, const char *path)
+{
+    error e = {0};
+    assert_ok(exr_write(path, &im->part, 1, 2, &e), e);
+}
+
+// Finite values in smooth runs: lossy codecs differ in how they treat NaN, and must have something to lose.
+static void make_finite(image *im)
+{
+    size_t n = (size_t)box2_width(im->part.data_window) * (size_t)box2_height(im->part.data_window);
+    for (int c = 0; c < im->part.channel_count; c++) {
+        uint8_t *data = (uint8_t *)(uintptr_t)im->channels[c].data;
+        for (size_t i = 0; i < n; i++) {
+            float f = (float)(i % 97) * 0.013f + (float)c;
+            uint16_t h;
+            exr_to_half(&f, 1, 1, &h);
+            uint32_t u = (uint32_t)(i * 7);
+            const void *from = im->channels[c].type == SAMPLE_HALF    ? (void *)&h
+                               : im->channels[c].type == SAMPLE_FLOAT ? (void *)&f
+                                                                      : (void *)&u;
+            memcpy(data + i * sample_size(im->channels[c].type), from, sample_size(im->channels[c].type));
+        }
+    }
+}
+
+static void test_tiled(void **state)
+{
+    (void)state;
+    if (!have_tool("exrmaketiled")) return;
+    static const char *const options[] = {"-z none -t 16 16",   "-z zip -t 64 64",   "-z zip -t 33 7",
+                                          "-z rle -t 20 90",    "-z piz -t 32 32",   "-z rle -t 1 1",
+                                          "-m -z zip -t 16 16", "-r -z piz -t 16 8", "-m -u -z zip -t 300 300"};
+    image im;
+    make_image(&im, 131, 77, EXR_COMPRESSION_ZIP, true);
+    make_finite(&im); // mip levels are filtered
+    write_image(&im, in_scratch("t.exr"));
+    for (size_t i = 0; i < sizeof options / sizeof *options; i++)
+        for (int threads = 1; threads <= 3; threads += 2) {
+            const char *tiled = in_scratch("tiled.exr");
+            assert_int_equal(run_command("exrmaketiled %s '%s' '%s'", options[i], in_scratch("t.exr"), tiled), 0);
+            exr_file *f = open_all(tiled, threads);
+            assert_true(f->parts[0].tiled);
+            assert_same_pixels(&im, &f->parts[0]);
+            exr_file_close(f);
+        }
+    free_image(&im);
+}
+
+static void assert_same_parts(const exr_part *a, const exr_part *b)
+{
+    size_t n = (size_t)box2_width(a->data_window) * (size_t)box2_height(a->data_window);
+    assert_true(box2_equal(a->data_window, b->data_window));
+    assert_int_equal(a->channel_count, b->channel_count);
+    for (int c = 0; c < a->channel_count; c++) {
+        assert_string_equal(a->channels[c].name, b->channels[c].name);
+        assert_int_equal(a->channels[c].type, b->channels[c].type);
+        assert_memory_equal(a->channels[c].data, b->channels[c].data, n * sample_size(a->channels[c].type));
+    }
+}
+
+// `lossy` must be another image than the original, or the comparison says little.
+static void check_lossy(const char *codec, int number, bool through_module)
+{
+    image im;
+    make_image(&im, 131, 77, EXR_COMPRESSION_ZIP, true);
+    make_finite(&im);
+    write_image(&im, in_scratch("l.exr"));
+    assert_int_equal(run_command("exrmaketiled -z %s -t 64 64 '%s' '%s'", codec, in_scratch("l.exr"), in_scratch("lossy.exr")),
+                     0);
+    assert_int_equal(run_command("exrmaketiled -z none '%s' '%s'", in_scratch("lossy.exr"), in_scratch("plain.exr")), 0);
+    exr_file *lossy = open_all(in_scratch("lossy.exr"), 2), *plain = open_all(in_scratch("plain.exr"), 2);
+    assert_int_equal(lossy->parts[0].compression, number);
+    assert_true(lossy->parts[0].lossy);
+    assert_same_parts(&lossy->parts[0], &plain->parts[0]);
+    const char *changed = through_module ? "R" : number == EXR_COMPRESSION_PXR24 ? "Z" : "a.R";
+    const exr_channel *c = find_channel(&lossy->parts[0], changed);
+    for (int i = 0; i < 7; i++)
+        if (strcmp(im.channels[i].name, changed) == 0)
+            assert_memory_not_equal(c->data, im.channels[i].data, 131 * 77 * sample_size(c->type));
+    exr_file_close(lossy);
+    exr_file_close(plain);
+    free_image(&im);
+}
+
+static void test_pxr24_and_b44(void **state)
+{
+    (void)state;
+    if (!have_tool("exrmaketiled")) return;
+    check_lossy("pxr24", EXR_COMPRESSION_PXR24, false);
+    check_lossy("b44", EXR_COMPRESSION_B44, false);
+    check_lossy("b44a", EXR_COMPRESSION_B44A, false);
+}
+
+static void test_dwa_through_the_module(void **state)
+{
+    (void)state;
+    if (!have_module() || !have_tool("exrmaketiled")) return;
+    check_lossy("dwaa", EXR_COMPRESSION_DWAA, true);
+    check_lossy("dwab", EXR_COMPRESSION_DWAB, true);
+}
+
+static void test_dwa_without_the_module(void **state)
+{
+    (void)state;
+    if (!have_tool("exrmaketiled")) return;
+#ifdef SSDO_LIBDIR
+    if (access(SSDO_LIBDIR "/ssdo-images.so", R_OK) == 0) return; // an installed one would be found
+#endif
+    image im;
+    error e = {0};
+    exr_file *f = NULL;
+    make_image(&im, 8, 8, EXR_COMPRESSION_ZIP, false);
+    write_image(&im, in_scratch("w.exr"));
+    assert_int_equal(run_command("exrmaketiled -z dwaa '%s' '%s'", in_scratch("w.exr"), in_scratch("dwaa.exr")), 0);
+    assert_ok(exr_file_open(in_scratch("dwaa.exr"), &f, &e), e);
+    f->parts[0].channels[0].wanted = true;
+    char *folder = strdup(getenv("SSDO_PLUGIN_DIR"));
+    setenv("SSDO_PLUGIN_DIR", "/nowhere", 1);
+    assert_false(exr_file_load(f, 1, &e));
+    setenv("SSDO_PLUGIN_DIR", folder, 1);
+    free(folder);
+    assert_int_equal(e.code, ERR_INPUT);
+    assert_non_null(strstr(e.message, "SSDO_PLUGIN_DIR"));
+    assert_non_null(strstr(e.message, "/nowhere"));
+    assert_null(f->parts[0].channels[0].data);
+    exr_file_close(f);
+    free_image(&im);
+}
+
+static void test_line_orders(void **state)
+{
+    (void)state;
+    if (!have_tool("oiiotool")) return;
+    static const struct {
+        const char *name, *tiles;
+        int order;
+    } orders[] = {
+        {"increasingY", "", 0}, {"decreasingY", "", 1}, {"randomY", "--tile 16 16", 2}, {"decreasingY", "--tile 16 16", 1}};
+    assert_int_equal(
+        run_command("oiiotool --pattern noise:seed=1 70x90 3 -d half --compression none -o '%s'", in_scratch("n.exr")), 0);
+    exr_file *plain = open_all(in_scratch("n.exr"), 1);
+    for (size_t i = 0; i < sizeof orders / sizeof *orders; i++)
+        for (int zip = 0; zip < 2; zip++) {
+            const char *path = in_scratch("ordered.exr");
+            assert_int_equal(run_command("oiiotool '%s' %s --attrib openexr:lineOrder %s -d half --compression %s -o '%s'",
+                                         in_scratch("n.exr"), orders[i].tiles, orders[i].name, zip ? "zip" : "none", path),
+                             0);
+            exr_file *f = open_all(path, 2);
+            exr_lineorder_t order;
+            exr_get_lineorder(f->core, 0, &order);
+            assert_int_equal(order, orders[i].order);
+            assert_same_parts(&plain->parts[0], &f->parts[0]);
+            exr_file_close(f);
+        }
+    exr_file_close(plain);
+}
+
+static void test_multipart(void **state)
+{
+    (void)state;
+    if (!have_tool("exrmultipart") || !have_tool("exrmaketiled")) return;
+    image a, b;
+    make_image(&a, 40, 50, EXR_COMPRESSION_ZIP, true);
+    make_image(&b, 40, 50, EXR_COMPRESSION_PIZ, true);
+    write_image(&a, in_scratch("pa.exr"));
+    write_image(&b, in_scratch("pb.exr"));
+    assert_int_equal(run_command("exrmaketiled -z rle '%s' '%s'", in_scratch("pb.exr"), in_scratch("pt.exr")), 0);
+    assert_int_equal(run_command("exrmultipart -combine -i '%s::flat' '%s::tiled' -o '%s' >/dev/null", in_scratch("pa.exr"),
+                                 in_scratch("pt.exr"), in_scratch("parts.exr")),
+                     0);
+    exr_file *f = open_all(in_scratch("parts.exr"), 3);
+    assert_int_equal(f->part_count, 2);
+    for (int i = 0; i < 2; i++) {
+        bool tiled = f->parts[i].tiled;
+        assert_string_equal(f->parts[i].name, tiled ? "tiled" : "flat");
+        assert_same_pixels(tiled ? &b : &a, &f->parts[i]);
+    }
+    assert_true(f->parts[0].tiled != f->parts[1].tiled);
+    exr_file_close(f);
+    free_image(&a);
+    free_image(&b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_tiled),
+        cmocka_unit_test(test_pxr24_and_b44),
+        cmocka_unit_test(test_dwa_through_the_module),
+        cmocka_unit_test(test_dwa_without_the_module),
+        cmocka_unit_test(test_line_orders),
+        cmocka_unit_test(test_multipart),
+    };
+    return cmocka_run_group_tests(tests, make_module_folder, remove_scratch);
+}

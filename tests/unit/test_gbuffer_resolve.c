@@ -1,0 +1,257 @@
+// Which channel is what: Blender and plain names, view layers, parts, views, options.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "gbuffer/conventions.h"
+#include "gbuffer/resolve.h"
+
+enum { MOST = 40 };
+static char text[4096];
+static exr_channel channels[MOST];
+static exr_part parts[8];
+static exr_file file;
+
+// "part: a.R b.R; part: c.R", channels parted by commas, parts by semicolons, "part@view" for a view.
+static const exr_file *with(const char *description)
+{
+    snprintf(text, sizeof text, "%s", description);
+    memset(channels, 0, sizeof channels);
+    memset(parts, 0, sizeof parts);
+    file = (exr_file){.path = (char[]){"in.exr"}, .parts = parts};
+    static char path[] = "in.exr", empty[] = "";
+    file.path = path;
+    int c = 0;
+    char *rest = text, *part;
+    while ((part = strsep(&rest, ";"))) {
+        exr_part *p = &parts[file.part_count++];
+        p->name = p->view = empty;
+        p->channels = &channels[c];
+        char *colon = strchr(part, ':');
+        if (colon) {
+            *colon = 0;
+            p->name = part, part = colon + 1;
+            char *at = strchr(p->name, '@');
+            if (at) *at = 0, p->view = at + 1;
+        }
+        char *name;
+        while ((name = strsep(&part, ","))) {
+            assert_true(c < MOST);
+            channels[c++] = (exr_channel){.name = name, .type = SAMPLE_FLOAT};
+            p->channel_count++;
+        }
+    }
+    return &file;
+}
+
+static resolution resolved(const char *description, const resolve_options *options)
+{
+    resolution r;
+    error e = {0};
+    resolve_options none = {0};
+    if (!resolve_channels(with(description), options ? options : &none, &r, NULL, &e)) fail_msg("%s", e.message);
+    return r;
+}
+
+static const char *name_of(const resolution *r, role which, int component)
+{
+    if (component >= r->components[which]) return "";
+    channel_ref c = r->channels[which][component];
+    return parts[c.part].channels[c.channel].name;
+}
+
+static void check(const resolution *r, role which, const char *first) { assert_string_equal(name_of(r, which, 0), first); }
+
+static void test_blender(void **state)
+{
+    (void)state;
+    resolution r = resolved("Composite.Combined.A,Composite.Combined.B,Composite.Combined.G,Composite.Combined.R,"
+                            "View.Layer 1.Combined.A,View.Layer 1.Combined.B,View.Layer 1.Combined.G,View.Layer 1.Combined.R,"
+                            "View.Layer 1.Depth.Z,View.Layer 1.DiffCol.B,View.Layer 1.DiffCol.G,View.Layer 1.DiffCol.R,"
+                            "View.Layer 1.DiffDir.B,View.Layer 1.DiffDir.G,View.Layer 1.DiffDir.R,"
+                            "View.Layer 1.DiffInd.B,View.Layer 1.DiffInd.G,View.Layer 1.DiffInd.R,"
+                            "View.Layer 1.Emit.B,View.Layer 1.Emit.G,View.Layer 1.Emit.R,"
+                            "View.Layer 1.Normal.X,View.Layer 1.Normal.Y,View.Layer 1.Normal.Z,"
+                            "View.Layer 1.Position.X,View.Layer 1.Position.Y,View.Layer 1.Position.Z",
+                            NULL);
+    assert_string_equal(r.convention, "blender");
+    assert_string_equal(r.view_layer, "View.Layer 1");
+    check(&r, ROLE_POSITION, "View.Layer 1.Position.X");
+    assert_string_equal(name_of(&r, ROLE_POSITION, 2), "View.Layer 1.Position.Z");
+    check(&r, ROLE_NORMAL, "View.Layer 1.Normal.X");
+    check(&r, ROLE_DEPTH, "View.Layer 1.Depth.Z");
+    check(&r, ROLE_ALBEDO, "View.Layer 1.DiffCol.R");
+    assert_string_equal(name_of(&r, ROLE_ALBEDO, 2), "View.Layer 1.DiffCol.B");
+    check(&r, ROLE_BEAUTY, "View.Layer 1.Combined.R");
+    check(&r, ROLE_ALPHA, "View.Layer 1.Combined.A");
+    check(&r, ROLE_EMISSION, "View.Layer 1.Emit.R");
+    check(&r, ROLE_DIFFUSE_DIRECT, "View.Layer 1.DiffDir.R");
+    check(&r, ROLE_DIFFUSE_INDIRECT, "View.Layer 1.DiffInd.R");
+    assert_int_equal(r.components[ROLE_ROUGHNESS], 0);
+    assert_int_equal(r.albedo, ALBEDO_DIFFUSE);
+    assert_int_equal(r.depth, DEPTH_AUTO);
+    assert_true(r.up_is_z);
+    assert_true(r.background_depth <= 1e10);
+    char line[256];
+    resolve_describe(&file, &r, ROLE_POSITION, line, sizeof line);
+    assert_string_equal(line, "position: View.Layer 1.Position.X/Y/Z (part 0, float)");
+
+    // The File Output node: no view layer, scalar suffix V; newer pass names.
+    r = resolved("Depth.V,Emission.R,Emission.G,Emission.B,Image.R,Image.G,Image.B,Image.A,Normal.X,Normal.Y,Normal.Z,"
+                 "Position.X,Position.Y,Position.Z",
+                 NULL);
+    assert_string_equal(r.convention, "blender");
+    check(&r, ROLE_DEPTH, "Depth.V");
+    check(&r, ROLE_BEAUTY, "Image.R");
+    check(&r, ROLE_ALPHA, "Image.A");
+    check(&r, ROLE_EMISSION, "Emission.R");
+}
+
+static void test_plain(void **state)
+{
+    (void)state;
+    resolution r = resolved("A,B,G,R,N.X,N.Y,N.Z,P.X,P.Y,P.Z,Z,albedo.B,albedo.G,albedo.R,roughness", NULL);
+    assert_string_equal(r.convention, "plain");
+    check(&r, ROLE_POSITION, "P.X");
+    check(&r, ROLE_NORMAL, "N.X");
+    check(&r, ROLE_DEPTH, "Z");
+    check(&r, ROLE_ALBEDO, "albedo.R");
+    check(&r, ROLE_BEAUTY, "R");
+    check(&r, ROLE_ALPHA, "A");
+    check(&r, ROLE_ROUGHNESS, "roughness");
+    assert_int_equal(r.albedo, ALBEDO_BASE);
+    assert_false(r.up_is_z);
+
+    r = resolved("n.blue,n.green,n.red,p.b,p.g,p.r,DEPTH.Z,Diffuse_Albedo.red,Diffuse_Albedo.green,Diffuse_Albedo.blue", NULL);
+    assert_string_equal(name_of(&r, ROLE_NORMAL, 0), "n.red");
+    assert_string_equal(name_of(&r, ROLE_POSITION, 1), "p.g");
+    check(&r, ROLE_DEPTH, "DEPTH.Z");
+    assert_int_equal(r.albedo, ALBEDO_DIFFUSE);
+    assert_int_equal(r.components[ROLE_BEAUTY], 0);
+
+    r = resolved("position.x,position.y,position.z,normal.x,normal.y,normal.z,depth.Z", NULL);
+    assert_string_equal(r.convention, "plain");
+    check(&r, ROLE_NORMAL, "normal.x");
+
+    // Depth alone: planar unless said otherwise.
+    r = resolved("R,G,B,A,Z", NULL);
+    assert_string_equal(r.convention, "plain");
+    assert_int_equal(r.depth, DEPTH_PLANAR);
+    r = resolved("R,G,B,A,Z", &(resolve_options){.depth = DEPTH_RADIAL});
+    assert_int_equal(r.depth, DEPTH_RADIAL);
+
+    // An incomplete position is none.
+    r = resolved("P.X,P.Y,Z", NULL);
+    assert_int_equal(r.components[ROLE_POSITION], 0);
+}
+
+static void test_parts(void **state)
+{
+    (void)state;
+    resolution r = resolved("rgba:R,G,B,A;P:R,G,B;N:X,Y,Z;depth:Z;albedo:R,G,B", NULL);
+    assert_int_equal(r.channels[ROLE_POSITION][0].part, 1);
+    assert_int_equal(r.channels[ROLE_NORMAL][0].part, 2);
+    assert_int_equal(r.channels[ROLE_DEPTH][0].part, 3);
+    assert_int_equal(r.channels[ROLE_ALBEDO][0].part, 4);
+    assert_int_equal(r.channels[ROLE_BEAUTY][0].part, 0);
+    assert_int_equal(r.channels[ROLE_ALPHA][0].part, 0);
+    assert_int_equal(r.main_part, 1);
+
+    r = resolved("beauty:R,G,B,A;data:P.X,P.Y,P.Z,N.X,N.Y,N.Z;more:albedo.R,albedo.G,albedo.B", NULL);
+    assert_string_equal(r.view_layer, "data");
+    assert_int_equal(r.channels[ROLE_ALBEDO][0].part, 2);
+    assert_int_equal(r.channels[ROLE_BEAUTY][0].part, 0);
+
+    // A stereo pair: a choice is needed, and each eye keeps to its own parts.
+    const char stereo[] = "P.left@left:X,Y,Z;P.right@right:X,Y,Z;N.left@left:X,Y,Z;N.right@right:X,Y,Z";
+    error e = {0};
+    assert_false(resolve_channels(with(stereo), &(resolve_options){0}, &r, NULL, &e));
+    assert_non_null(strstr(e.message, "'left', 'right'"));
+    r = resolved(stereo, &(resolve_options){.view_layer = "right"});
+    assert_int_equal(r.channels[ROLE_POSITION][0].part, 1);
+    assert_int_equal(r.channels[ROLE_NORMAL][0].part, 3);
+}
+
+static void test_view_layers(void **state)
+{
+    (void)state;
+    const char two[] = "fg.Position.X,fg.Position.Y,fg.Position.Z,fg.DiffCol.R,fg.DiffCol.G,fg.DiffCol.B,"
+                       "bg 2.Position.X,bg 2.Position.Y,bg 2.Position.Z,bg 2.Normal.X,bg 2.Normal.Y,bg 2.Normal.Z";
+    resolution r;
+    error e = {0};
+    assert_false(resolve_channels(with(two), &(resolve_options){0}, &r, NULL, &e));
+    assert_int_equal(e.code, ERR_INPUT);
+    assert_string_equal(e.file, "in.exr");
+    assert_non_null(strstr(e.message, "'fg', 'bg 2'"));
+    assert_non_null(strstr(e.message, "--view-layer"));
+    r = resolved(two, &(resolve_options){.view_layer = "bg 2"});
+    check(&r, ROLE_POSITION, "bg 2.Position.X");
+    check(&r, ROLE_NORMAL, "bg 2.Normal.X");
+    assert_int_equal(r.components[ROLE_ALBEDO], 0); // the other layer's albedo is not borrowed
+    r = resolved(two, &(resolve_options){.view_layer = "FG"});
+    check(&r, ROLE_ALBEDO, "fg.DiffCol.R");
+    e = (error){0};
+    assert_false(resolve_channels(with(two), &(resolve_options){.view_layer = "mid"}, &r, NULL, &e));
+    assert_non_null(strstr(e.message, "'mid'"));
+    assert_non_null(strstr(e.message, "'fg'"));
+    // Naming the position decides it too.
+    r = resolved(two, &(resolve_options){.names = {[ROLE_POSITION] = "bg 2.Position"}});
+    check(&r, ROLE_NORMAL, "bg 2.Normal.X");
+}
+
+static void test_options(void **state)
+{
+    (void)state;
+    const char odd[] = "where.R,where.G,where.B,facing.X,facing.Y,facing.Z,far,tint.R,tint.G,tint.B,a.X,b.Y,c.Z,Z";
+    resolution r = resolved(odd, &(resolve_options){.names = {[ROLE_POSITION] = "where",
+                                                              [ROLE_NORMAL] = "a.X,b.Y,c.Z",
+                                                              [ROLE_DEPTH] = "far",
+                                                              [ROLE_ALBEDO] = "TINT",
+                                                              [ROLE_ROUGHNESS] = "tint.G"},
+                                                    .albedo = ALBEDO_DIFFUSE,
+                                                    .depth = DEPTH_RADIAL});
+    check(&r, ROLE_POSITION, "where.R");
+    check(&r, ROLE_NORMAL, "a.X");
+    assert_string_equal(name_of(&r, ROLE_NORMAL, 2), "c.Z");
+    check(&r, ROLE_DEPTH, "far");
+    check(&r, ROLE_ALBEDO, "tint.R");
+    check(&r, ROLE_ROUGHNESS, "tint.G");
+    assert_int_equal(r.albedo, ALBEDO_DIFFUSE);
+    assert_int_equal(r.depth, DEPTH_RADIAL);
+
+    error e = {0};
+    assert_false(resolve_channels(with(odd), &(resolve_options){.names = {[ROLE_NORMAL] = "nix"}}, &r, NULL, &e));
+    assert_string_equal(e.channel, "nix");
+    assert_non_null(strstr(e.message, "--normal"));
+    assert_non_null(strstr(e.message, "facing"));
+    e = (error){0};
+    assert_false(resolve_channels(with(odd), &(resolve_options){.names = {[ROLE_NORMAL] = "far"}}, &r, NULL, &e));
+    assert_non_null(strstr(e.message, "X Y Z"));
+}
+
+static void test_nothing(void **state)
+{
+    (void)state;
+    resolution r;
+    error e = {0};
+    assert_false(resolve_channels(with("R,G,B,spec.R,spec.G,spec.B"), &(resolve_options){0}, &r, NULL, &e));
+    assert_int_equal(e.code, ERR_INPUT);
+    assert_non_null(strstr(e.message, "--position"));
+    assert_non_null(strstr(e.message, "--depth"));
+    assert_non_null(strstr(e.message, "spec"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_blender),     cmocka_unit_test(test_plain),   cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_view_layers), cmocka_unit_test(test_options), cmocka_unit_test(test_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
