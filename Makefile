@@ -53,7 +53,7 @@ $(BIN): $(BUILD)/src/main.o $(BUILD)/libssdo.a
 
 $(BUILD)/libssdo.a: $(OBJ)
 	@rm -f $@
-	ar rcsD $@ $^
+	@ar rcsD $@ $^
 
 $(BUILD)/%.o: %.c VERSION | deps-stamp
 	@mkdir -p $(@D)

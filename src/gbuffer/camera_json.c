@@ -91,7 +91,8 @@ bool camera_from_json(const char *path, box2 data, box2 display, double pixel_as
 {
     source s = {.path = path, .root = json_object_from_file(path), .e = e};
     if (!s.root) {
-        const char *why = json_util_get_last_err();
+        const char *why = json_util_get_last_err(); // ends in a newline
+        int length = why ? (int)strcspn(why, "\n") : 0;
         return err_set(e, ERR_USAGE, path, NULL, "the camera file cannot be read as JSON%s%.200s", why ? ": " : "",
                        why ? why : "");
     }

@@ -1,6 +1,7 @@
 // One frame's surfaces in camera space, ready for upload: what the passes read.
 //
 // All arrays are width * height over the frame's data window, row-major, top row first, owned by the gbuffer (gbuffer_free).
+// A pixel holds a surface if and only if its depth is > 0: that, never the normal, is the test for validity.
 // Nothing in them is NaN or infinite, whatever the file holds: colours are finite (NaN and -inf become 0, +inf and huge values
 // 1e30 at most), depth and normal obey the contracts below.
 #ifndef SSDO_GBUFFER_GBUFFER_H
@@ -33,7 +34,7 @@ typedef struct gbuffer {
     double pixel_aspect;
     camera camera;
     float *depth;          // planar depth z in camera space, > 0; exactly 0 where there is no surface
-    float *normal;         // 4 a pixel: unit camera-space normal facing the eye's side, w = 0; all 0 where there is no surface
+    float *normal;         // 4 a pixel: unit camera-space normal, w = 0; all 0 where there is no surface, except as said below
     float *albedo;         // 4 a pixel: r g b as stored (Blender: coverage-premultiplied), w = 0; NULL if absent or not needed
     float *beauty;         // 4 a pixel: r g b, A (1 if absent); NULL
     float *material;       // 2 a pixel: roughness, metallic; NULL
@@ -46,14 +47,33 @@ typedef struct gbuffer {
     bool position_is_camera_space;
     size_t valid;          // pixels with a surface
     size_t off_ray;        // pixels whose P lay off their own ray and were moved onto it (DESIGN.md 4)
-    double extent;         // robust size of the visible surfaces, scene units: see gbuffer_extent in radius.h
+    double extent;         // robust size of the visible surfaces, scene units: gbuffer_extent in radius.h
     char evidence[8][160]; // what was measured, one line each, for -v and the report
     int evidence_count;
 } gbuffer;
 
+// Normals keep the orientation they are stored with, unless they point away from the eye by more than 6 degrees past the
+// silhouette and away from the surface the depths form: the back of a double-sided surface, turned towards the eye. So
+// interpolated and bumped normals may face away slightly (dot(n, ray) <= 0.1) or, agreeing with the surface, more.
+//
+// Coverage is 1 away from the background. Within one pixel (3 x 3) of it, it is alpha where alpha varies over the picture, else
+// the length of the normal where the renderer averages normals, else whether there is a surface. A pixel with coverage > 0 and
+// depth 0 (the renderer's one sample of position missed the surface that the averaged layers show) keeps depth 0, and its normal
+// is the averaged one, renormalised: a later pass fills its layers from the nearest valid neighbour with a similar normal.
+//
+// Depth is P's camera-space z. Where P was sampled more than 0.02 pixels off its pixel's centre it is instead where the centre's
+// ray meets the plane (P, N), unless that plane is seen at a grazing angle (cosine below 0.1) or the result leaves the range of
+// the 3 x 3 neighbours' depths by more than half of it. A P further off than 3 pixels (and 10 times the median) is not believed:
+// the depth channel's value counts if it is known what that is, else P's own z if a neighbour's lies within 2 %, else there is no
+// surface. Where P is coarser than the depth channel by a factor of 16 (half floats, a world far from its origin), z comes from
+// that.
+//
 // Builds the frame from loaded channels. Validity from position and depth (finite, depth > 0, below the background value, not
 // P = 0 with a background depth), never from |N|. Works in double and subtracts the camera before anything becomes float.
-// Camera order: flag > fit from P cross-checked with the header > header > ERR_INPUT naming --fov, --ortho, --camera.
+// Camera order: flag > fit from P cross-checked with the header > header > one plane with planar depth > ERR_INPUT naming --fov,
+// --ortho, --camera. A lens given by flag takes its pose from P.
+// Positions in camera space (seen from the fit, unless the convention promises world space) leave has_world false.
+// `log` may be NULL.
 // Without P: positions from depth (planar or radial); without N: normals from depth (said in a warning).
 // A frame without any surface is not an error: valid = 0, and the camera is whatever is known.
 bool gbuffer_build(const exr_file *file, const resolution *r, const gbuffer_options *options, gbuffer *out, log_t *log, error *e);

@@ -54,6 +54,7 @@ static void raw_row(build *b, int y)
         if (b->surface[i] != SURFACE_YES) continue;
         double z = b->has_position ? sampled(b, x, y).z : depth_from_channel(b, x, y);
         if (b->has_position && b->depth_wins && !b->lateral) z = depth_from_channel(b, x, y);
+        if (!(z > 0.0) && b->depth_measured) z = depth_from_channel(b, x, y); // a bad P behind the eye
         float as_float = (float)z;
         if (as_float > 0.0f && isfinite(as_float))
             b->raw[i] = as_float;

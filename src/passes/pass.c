@@ -21,7 +21,7 @@ static double now(clockid_t clock)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-static void fill_block(frame_block *b, const gbuffer *gb, const environment *env)
+static void fill_block(frame_block *b, const gbuffer *gb, const environment *env, mat3 world_from_camera)
 {
     const camera *cam = &gb->camera;
     *b = (frame_block){
@@ -29,7 +29,7 @@ static void fill_block(frame_block *b, const gbuffer *gb, const environment *env
         .size = {gb->width, gb->height, cam->kind == CAMERA_ORTHOGRAPHIC, 0},
     };
     if (!env) return;
-    mat3 m = m3_mul(env->map_from_world, cam->has_world ? cam->world_from_camera : m3_identity());
+    mat3 m = m3_mul(env->map_from_world, world_from_camera);
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++) b->map_from_camera[r][c] = (float)m.m[r][c];
     const env_level *top = &env->levels[0];
@@ -72,7 +72,7 @@ bool pass_begin(pass_context *c, gpu *g, const gbuffer *gb, const environment *e
         return false;
     }
     frame_block block;
-    fill_block(&block, gb, env);
+    fill_block(&block, gb, env, set->world_from_camera);
     c->frame_uniforms = gpu_uniforms_make(sizeof block);
     gpu_uniforms_set(c->frame_uniforms, 0, &block, sizeof block);
     c->params_uniforms = gpu_uniforms_make(256);

@@ -27,6 +27,7 @@ typedef struct pass_settings {
     double scale, contrast;
     double env_level; // < 0: by solid angle
     double bounce_strength;
+    mat3 world_from_camera; // to the world that the environment is fixed to
     int seed;
     double amount;
     bool visibility_mode;

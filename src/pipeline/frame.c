@@ -83,20 +83,9 @@ static bool read_frame(job *j, const char *input, frame_result *r, error *e)
     return ok;
 }
 
+// What the rooms below have not said themselves: channels, camera and measurements are theirs.
 static void describe(const job *j, const frame_result *r)
 {
-    char text[320];
-    for (int i = 0; i < ROLE_COUNT; i++) {
-        if (!r->resolution.components[i]) continue;
-        resolve_describe(r->file, &r->resolution, (role)i, text, sizeof text);
-        log_info(j->log, "%s", text);
-    }
-    const camera *c = &r->gb.camera;
-    static const char *sources[] = {"option", "fit of the position pass", "file header", "fit of one plane"};
-    log_info(j->log, "camera: %s, from %s, focal %.3f x %.3f %s, centre %.3f %.3f, residual %.4g px, %.1f %% of pixels in place",
-             c->kind == CAMERA_ORTHOGRAPHIC ? "orthographic" : "perspective", sources[c->source], c->fx, c->fy,
-             c->kind == CAMERA_ORTHOGRAPHIC ? "px per unit" : "px", c->cx, c->cy, c->residual, 100.0 * c->inliers);
-    for (int i = 0; i < r->gb.evidence_count; i++) log_info(j->log, "measured: %s", r->gb.evidence[i]);
     log_info(j->log, "surfaces: %zu of %zu pixels", r->gb.valid, (size_t)r->gb.width * (size_t)r->gb.height);
     log_info(j->log, "radius: %g scene units%s; thickness %g", r->set.radius, j->o->radius_unit == RADIUS_AUTO ? " (auto)" : "",
              r->set.thickness);
@@ -105,26 +94,26 @@ static void describe(const job *j, const frame_result *r)
                  r->plan.steps[i].why);
 }
 
+static bool env_up_z(const job *j, const frame_result *r) { return j->o->env_up ? j->o->env_up == 'z' : r->resolution.up_is_z; }
+
 // The environment is prepared with the first frame, because its default up axis is the renderer's.
 static bool prepare_light(job *j, const frame_result *r, error *e)
 {
     if (!r->plan.light || j->env_loaded) return true;
-    bool up_z = j->o->env_up ? j->o->env_up == 'z' : r->resolution.up_is_z;
-    env_options eo = {
-        .path = j->o->env, .up_z = up_z, .rotate_degrees = j->o->env_rotate, .scale = j->o->env_scale, .threads = j->threads};
+    env_options eo = {.path = j->o->env,
+                      .up_z = env_up_z(j, r),
+                      .rotate_degrees = j->o->env_rotate,
+                      .scale = j->o->env_scale,
+                      .threads = j->threads};
     if (!environment_load(&eo, &j->env, j->log, e)) return false;
     j->env_loaded = true;
-    if (j->o->env)
-        log_info(j->log, "environment: %s, %c up, mean radiance %.3g %.3g %.3g", j->o->env, up_z ? 'z' : 'y', j->env.mean[0],
-                 j->env.mean[1], j->env.mean[2]);
-    else
-        log_warn(j->log, "white", "no --env: radiance is that of a white environment of radiance 1");
+    if (!j->o->env) log_warn(j->log, "white", "no --env: radiance is that of a white environment of radiance 1");
     return pass_upload_environment(&j->g, &j->env, &j->env_image, e);
 }
 
 static bool check_world(const job *j, const frame_result *r, error *e)
 {
-    bool camera_frame = j->o->env_frame && strcmp(j->o->env_frame, "camera") == 0;
+    bool camera_frame = strcmp(j->o->env_frame, "camera") == 0;
     if (!j->o->env || !r->plan.light || camera_frame || r->gb.camera.has_world || r->gb.valid == 0) return true;
     return err_set(
         e, ERR_INPUT, r->file->path, NULL,
@@ -162,6 +151,15 @@ static double median_depth(const gbuffer *gb)
     return depths[n / 2];
 }
 
+// The world the environment is fixed to: the scene's, or one that moves with the camera, its up axis up in the picture and the
+// camera looking along +y (z up) or -z (y up).
+static mat3 world_from_camera(const job *j, const frame_result *r)
+{
+    static const mat3 up_z = {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}}, up_y = {{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
+    if (strcmp(j->o->env_frame, "camera") == 0) return env_up_z(j, r) ? up_z : up_y;
+    return r->gb.camera.has_world ? r->gb.camera.world_from_camera : m3_identity();
+}
+
 static pass_settings settings_of(const job *j, const frame_result *r)
 {
     const options *o = j->o;
@@ -177,6 +175,7 @@ static pass_settings settings_of(const job *j, const frame_result *r)
         .contrast = o->contrast,
         .env_level = o->env_lod,
         .bounce_strength = o->bounce_strength,
+        .world_from_camera = world_from_camera(j, r),
         .amount = o->amount,
         .visibility_mode = r->plan.visibility_mode,
         .base_albedo = r->resolution.albedo == ALBEDO_BASE,

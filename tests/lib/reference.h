@@ -99,7 +99,7 @@ double reference_alchemy(const layer *l, pixel p, const reference_alchemy_option
 typedef struct reference_slice_options {
     double radius;    // cutoff: surface farther than this from P does not block; INFINITY is allowed
     double thickness; // bitmask only: length along the view ray, away from the eye; INFINITY is allowed
-    int slices;       // uniform in angle around V; 0 = 64
+    int slices;       // uniform in angle around V; 0 = 128
 } reference_slice_options;
 
 // Cumulative cosine weight along a slice: integral of |sin t| cos(t - n) from 0 to t (THEORY.md 2).

@@ -181,7 +181,7 @@ static double integrate(const layer *l, pixel p, const reference_slice_options *
     slice s = {.layer = l, .options = o, .position = centre->position, .start = p, .arcs = arcs};
     s.to_eye = layer_to_eye(l, centre->position);
     vec3 a = v3_normalize(v3_cross(s.to_eye, fabs(s.to_eye.x) < 0.6 ? v3(1, 0, 0) : v3(0, 1, 0))), b = v3_cross(s.to_eye, a);
-    int slices = o->slices > 0 ? o->slices : 64;
+    int slices = o->slices > 0 ? o->slices : 128;
     double open = 0.0, empty = 0.0;
     for (int i = 0; i < slices; i++) {
         aim(&s, centre->normal, a, b, M_PI * (i + 0.5) / slices);

@@ -22,6 +22,8 @@ static char scratch_folder[64];
 static inline int make_scratch(void **state)
 {
     (void)state;
+    strcpy(scratch_folder, "/dev/shm/ssdo-exr-XXXXXX"); // memory: some tests write thousands of files
+    if (mkdtemp(scratch_folder)) return 0;
     strcpy(scratch_folder, "/tmp/ssdo-exr-XXXXXX");
     return mkdtemp(scratch_folder) ? 0 : -1;
 }

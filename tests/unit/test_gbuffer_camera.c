@@ -164,6 +164,36 @@ static void test_bad_points(void **state)
     }
 }
 
+// Bad points that agree with each other (a reflection, another object's pass): no reweighting gets out of that, drawing does.
+static void test_conspiring_points(void **state)
+{
+    (void)state;
+    camera c = truth(CAMERA_PERSPECTIVE, false);
+    observe(&c, 2, 12, false, 12);
+    mat3 turn = pose(1.1, 0.6, -2.0, false);
+    for (int i = 0; i < COUNT; i++)
+        if (i % 5 < 2) points[i].world = v3_add(v3_scale(m3_apply(turn, points[i].world), 2.0), v3(40, -10, 3));
+    camera found = fitted();
+    assert_camera(&found, &c, 1e-6, 1e-5);
+}
+
+static void test_refine(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 2; kind++) {
+        camera c = truth(kind ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE, false), start = c;
+        observe(&c, 2, 12, false, 13);
+        start.world_from_camera = m3_mul(pose(0.1, -0.08, 0.15, false), c.world_from_camera);
+        start.origin = v3_add(c.origin, v3(0.2, 0.3, -0.1));
+        start.fx *= 1.1, start.fy *= 0.93;
+        unsigned all = FREE_FX | FREE_FY | FREE_CENTRE | FREE_POSE;
+        double spread;
+        assert_true(camera_refine(&start, points, NULL, NULL, COUNT, all, &spread));
+        assert_true(spread > 0 && spread < 1e-2);
+        assert_camera(&start, &c, 1e-8, 1e-7);
+    }
+}
+
 static void test_horizon(void **state)
 {
     (void)state;
@@ -325,6 +355,8 @@ int main(void)
         cmocka_unit_test(test_hopeless),
         cmocka_unit_test(test_flags),
         cmocka_unit_test(test_json),
+        cmocka_unit_test(test_conspiring_points),
+        cmocka_unit_test(test_refine),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

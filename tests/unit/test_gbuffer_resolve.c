@@ -24,7 +24,7 @@ static const exr_file *with(const char *description)
     snprintf(text, sizeof text, "%s", description);
     memset(channels, 0, sizeof channels);
     memset(parts, 0, sizeof parts);
-    file = (exr_file){.path = (char[]){"in.exr"}, .parts = parts};
+    file = (exr_file){.parts = parts};
     static char path[] = "in.exr", empty[] = "";
     file.path = path;
     int c = 0;

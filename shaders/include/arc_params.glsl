@@ -1,0 +1,14 @@
+layout(std140, binding = 1) uniform Params {
+    float radius;        // R, scene units
+    float thickness;     // of runs of unknown width; where `fixed_thickness`, of everything
+    float kappa;         // thickness of a run over its width
+    int fixed_thickness;
+    int slices, steps;   // steps a side
+    int seed;
+    int planes;          // how many planes are in use
+    float spacing;       // exponent of the distances of the steps
+    float tolerance;     // of a run, in footprints per pixel of step
+    float level;
+    float strength;
+    vec4 test;
+} params;

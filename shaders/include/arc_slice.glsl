@@ -1,0 +1,54 @@
+// One side of a slice: a half plane through the view ray of the receiver, and what of its directions is blocked.
+//
+// Vectors of the half plane are written (x, y): x along the receiver's tangent, outwards, y along its normal projected into the
+// slice. Angles t are measured from V, positive outwards; n is the angle of the projected normal (THEORY.md 2). Directions are
+// named by their share c of the slice's cosine weight, from 0 (the tangent on the far side) to 1 (the tangent on this side):
+//     F(t) = (cos n sin^2 t + sin n (t - sin t cos t)) / 2 for t >= 0,   c = (F(t) - F(n - pi/2)) / (cos n + n sin n)
+
+struct Side {
+    vec3 tangent; // unit, outwards
+    vec3 normal;  // the receiver's, divided by the length of its projection: dot with it is y of the projected vector
+    float cos_n, sin_n;
+    float below;  // -F(n - pi/2)
+    float scale;  // 1 / (cos n + n sin n)
+    vec2 eye;     // where the eye is, or for an orthographic camera its direction
+};
+
+// acos to 7e-5 (Abramowitz and Stegun 4.4.45).
+float fast_acos(float x) {
+    float a = abs(x);
+    float r = sqrt(1.0 - a) * (1.5707288 + a * (-0.2121144 + a * (0.0742610 - 0.0187293 * a)));
+    return x < 0.0 ? PI - r : r;
+}
+
+// Below this sine over the tangent plane nothing counts: rounding and half-float normals live there, and 1e-5 of the weight.
+const float GRAZING = 0.004;
+
+// c of the direction to a point; 1 at and below the tangent plane.
+float share(Side s, vec2 w) {
+    float l = inversesqrt(max(dot(w, w), 1e-30));
+    float ct = clamp((w.y * s.cos_n - w.x * s.sin_n) * l, -1.0, 1.0), st = max((w.y * s.sin_n + w.x * s.cos_n) * l, 0.0);
+    float t = fast_acos(ct);
+    float c = (0.5 * (s.cos_n * st * st + s.sin_n * (t - st * ct)) + s.below) * s.scale;
+    return w.y * l <= GRAZING ? 1.0 : clamp(c, 0.0, 1.0);
+}
+
+vec2 in_slice(Side s, vec3 w) { return vec2(dot(w, s.tangent), dot(w, s.normal)); }
+
+// Unit vector from the eye through a point, on which the surface hides what is behind it.
+vec2 away(Side s, vec2 w) { return is_orthographic() ? -s.eye : normalize(w - s.eye); }
+
+// ---- 64 sectors, each tested at one direction that is jittered per slice, so that a mask's expected weight is exact
+
+uvec2 sectors_below(int k) {
+    uint low = k >= 32 ? ~0u : ~(~0u << uint(max(k, 0)));
+    uint high = k >= 64 ? ~0u : k <= 32 ? 0u : ~(~0u << uint(k - 32));
+    return uvec2(low, high);
+}
+// Sectors whose direction lies in [from, to).
+uvec2 sectors(float from, float to, float jitter) {
+    int a = int(ceil(from * 64.0 - jitter)), b = int(ceil(to * 64.0 - jitter));
+    return sectors_below(b) & ~sectors_below(a);
+}
+float sector_share(uvec2 mask) { return float(bitCount(mask.x) + bitCount(mask.y)) * (1.0 / 64.0); }
+uvec2 mirrored(uvec2 mask) { return bitfieldReverse(mask.yx); }

@@ -1,0 +1,25 @@
+// The march of the older methods, sample by sample: the horizon (all beyond the highest sample is blocked) and the bitmask (each
+// sample blocks from its front to `thickness` behind it on its view ray).
+uvec2 march(Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
+    uvec2 blocked = uvec2(0u);
+    float limit = min(line.reach, line.border), lowest = 1.0;
+    for (int i = 0; i < params.steps; i++) {
+        float at = step_distance(i, step_jitter, limit);
+        if (at > limit) break;
+        ivec2 q = ivec2(floor(line.origin + at * line.direction));
+        float depth = imageLoad(depth_image, q).r;
+        vec3 to = position_of(q, depth) - P;
+        bool counts = depth != 0.0 && dot(to, to) < params.radius * params.radius;
+        vec2 w = in_slice(s, to);
+        float front = share(s, w);
+#ifdef HORIZON
+        if (counts) lowest = min(lowest, front);
+#else
+        if (counts) blocked |= sectors(front, share(s, w + params.thickness * away(s, w)), jitter);
+#endif
+    }
+#ifdef HORIZON
+    blocked = sectors(lowest, 1.0, jitter);
+#endif
+    return blocked;
+}

@@ -1,0 +1,139 @@
+// The OpenImageIO module: PNG out, other image formats in, and a clear remedy when it is missing.
+#include <libgen.h>
+
+#include "exr_support.h"
+#include "plugin/images.h"
+
+static int use_built_module(void **state)
+{
+    char exe[4000] = "", folder[4100];
+    if (readlink("/proc/self/exe", exe, sizeof exe - 1) < 0) return -1;
+    snprintf(folder, sizeof folder, "%s/..", dirname(exe)); // build/tests/.. is where the module is built
+    setenv("SSDO_PLUGIN_DIR", folder, 0);
+    return make_scratch(state);
+}
+
+static bool have_module(void)
+{
+    char path[4300];
+    snprintf(path, sizeof path, "%s/ssdo-images.so", getenv("SSDO_PLUGIN_DIR"));
+    if (access(path, R_OK) == 0) return true;
+    print_message("note: %s is not built, so this is not checked\n", path);
+    return false;
+}
+
+static void test_png_there_and_back(void **state)
+{
+    (void)state;
+    if (!have_module()) return;
+    enum { W = 5, H = 3 };
+    uint8_t rgb[W * H * 3];
+    for (int i = 0; i < W * H * 3; i++) rgb[i] = (uint8_t)(i * 5 + 1);
+    error e = {0};
+    for (int twice = 0; twice < 2; twice++) assert_ok(images_write_png(in_scratch("a.png"), W, H, rgb, &e), e); // replaces
+    int w, h, channels;
+    float *pixels;
+    assert_ok(images_read_float(in_scratch("a.png"), 0, &w, &h, &channels, &pixels, &e), e);
+    assert_true(w == W && h == H && channels == 3);
+    for (int i = 0; i < W * H * 3; i++) assert_int_equal((int)(pixels[i] * 255.0f + 0.5f), rgb[i]);
+    free(pixels);
+    // Nothing but the file is left.
+    assert_int_equal(run_command("test \"$(ls -A '%s')\" = a.png", scratch_folder), 0);
+}
+
+static void test_failures(void **state)
+{
+    (void)state;
+    if (!have_module()) return;
+    const uint8_t rgb[3] = {1, 2, 3};
+    error e = {0};
+    assert_false(images_write_png(in_scratch("none/a.png"), 1, 1, rgb, &e));
+    assert_int_equal(e.code, ERR_OUTPUT);
+    assert_non_null(strstr(e.message, in_scratch("none")));
+    int w, h, channels;
+    float *pixels = (float *)1;
+    e = (error){0};
+    spill(in_scratch("text.png"), "This is not a picture.", 22);
+    assert_false(images_read_float(in_scratch("text.png"), 0, &w, &h, &channels, &pixels, &e));
+    assert_int_equal(e.code, ERR_INPUT);
+    assert_null(pixels);
+    e = (error){0};
+    assert_false(images_read_float(in_scratch("missing.png"), 0, &w, &h, &channels, &pixels, &e));
+    assert_int_equal(e.code, ERR_INPUT);
+}
+
+static void test_missing_part_or_channel(void **state)
+{
+    (void)state;
+    if (!have_module()) return;
+    image im;
+    error e = {0};
+    make_image(&im, 9, 4, 3, true);
+    assert_ok(exr_write(in_scratch("i.exr"), &im.part, 1, 1, &e), e);
+    const char *const names[] = {"normal.X", NULL, "id"};
+    const int types[] = {SAMPLE_FLOAT, SAMPLE_HALF, SAMPLE_UINT};
+    void *data[3];
+    assert_ok(images_read_exr_native(in_scratch("i.exr"), 0, 3, names, types, data, &e), e);
+    assert_memory_equal(data[0], im.channels[6].data, 9 * 4 * 4);
+    assert_null(data[1]);
+    assert_memory_equal(data[2], im.channels[3].data, 9 * 4 * 4);
+    free(data[0]);
+    free(data[2]);
+    assert_false(images_read_exr_native(in_scratch("i.exr"), 1, 3, names, types, data, &e));
+    assert_int_equal(e.code, ERR_INPUT);
+    e = (error){0};
+    const char *const wrong[] = {"normal.X", "none", NULL};
+    assert_false(images_read_exr_native(in_scratch("i.exr"), 0, 3, wrong, types, data, &e));
+    assert_non_null(strstr(e.message, "none"));
+    free_image(&im);
+}
+
+static void test_without_the_module(void **state)
+{
+    (void)state;
+#ifdef SSDO_LIBDIR
+    if (access(SSDO_LIBDIR "/ssdo-images.so", R_OK) == 0) return; // an installed one would be found
+#endif
+    char *folder = strdup(getenv("SSDO_PLUGIN_DIR"));
+    setenv("SSDO_PLUGIN_DIR", "/nowhere", 1);
+    const uint8_t rgb[3] = {1, 2, 3};
+    error in = {0}, out = {0};
+    int w, h, channels;
+    float *pixels;
+    assert_false(images_write_png(in_scratch("b.png"), 1, 1, rgb, &out));
+    assert_false(images_read_float(in_scratch("b.png"), 0, &w, &h, &channels, &pixels, &in));
+    setenv("SSDO_PLUGIN_DIR", folder, 1);
+    free(folder);
+    assert_int_equal(out.code, ERR_OUTPUT);
+    assert_int_equal(in.code, ERR_INPUT);
+    assert_non_null(strstr(out.message, "SSDO_PLUGIN_DIR"));
+    assert_non_null(strstr(in.message, "/nowhere"));
+    assert_int_not_equal(access(in_scratch("b.png"), F_OK), 0);
+}
+
+static void test_broken_module(void **state)
+{
+    (void)state;
+    char *folder = strdup(getenv("SSDO_PLUGIN_DIR"));
+    spill(in_scratch("ssdo-images.so"), "not a library", 13);
+    setenv("SSDO_PLUGIN_DIR", scratch_folder, 1);
+    const uint8_t rgb[3] = {1, 2, 3};
+    error e = {0};
+    bool ok = images_write_png(in_scratch("b.png"), 1, 1, rgb, &e);
+    setenv("SSDO_PLUGIN_DIR", folder, 1);
+    free(folder);
+    unlink(in_scratch("ssdo-images.so"));
+    if (ok) return; // another module was found after it
+    assert_int_equal(e.code, ERR_OUTPUT);
+    assert_non_null(strstr(e.message, "cannot be loaded"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_png_there_and_back),      cmocka_unit_test(test_failures),
+        cmocka_unit_test(test_missing_part_or_channel), cmocka_unit_test(test_without_the_module),
+        cmocka_unit_test(test_broken_module),
+    };
+    return cmocka_run_group_tests(tests, use_built_module, remove_scratch);
+}

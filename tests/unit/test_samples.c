@@ -1,0 +1,129 @@
+// The rendered samples against path-traced truth, through the whole program but its argv.
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "pipeline/frame.h"
+#include "sample.h"
+
+static void must(bool ok, const error *e)
+{
+    char text[1024];
+    if (ok) return;
+    err_format(e, text, sizeof text);
+    fail_msg("%s", text);
+}
+
+typedef struct run {
+    sample s;
+    options o;
+    log_t log;
+    job j;
+    frame_result r;
+    char output[64];
+} run;
+
+// Filters the sample with its own radius and sky.
+static void run_sample(run *x, const sample *s)
+{
+    error e = {0};
+    *x = (run){.s = *s};
+    must(sample_load(&x->s, &e), &e);
+    options_defaults(&x->o);
+    snprintf(x->output, sizeof x->output, "/tmp/ssdo_sample_%d.exr", (int)getpid());
+    x->o.env = x->s.env;
+    x->o.env_rotate = x->s.env_rotate;
+    x->o.radius_unit = RADIUS_WORLD;
+    x->o.radius = s->ao_distance;
+    log_init(&x->log, LOG_QUIET);
+    must(job_open(&x->j, &x->o, &x->log, &e), &e);
+    must(frame_run(&x->j, s->file, x->output, &x->r, &e), &e);
+}
+
+static void run_free(run *x)
+{
+    remove(x->output);
+    frame_free(&x->r);
+    job_close(&x->j);
+    log_free(&x->log);
+    sample_free(&x->s);
+}
+
+static void camera_is_blenders(const run *x)
+{
+    const camera *c = &x->r.gb.camera;
+    const sample *s = &x->s;
+    double focal = s->orthographic ? s->pixels_per_unit : s->focal;
+    assert_int_equal(c->kind == CAMERA_ORTHOGRAPHIC, s->orthographic);
+    if (fabs(c->fx / focal - 1.0) > 1e-4) fail_msg("%s: focal length %.6f, Blender says %.6f", s->name, c->fx, focal);
+    assert_true(c->residual < 0.01);
+    if (s->orthographic) return; // the eye of an orthographic camera is anywhere on its axis
+    vec3 eye = v3(s->matrix_world[0][3], s->matrix_world[1][3], s->matrix_world[2][3]);
+    double off = v3_length(v3_sub(c->origin, eye));
+    if (off > 1e-4 * s->scene_size) fail_msg("%s: the eye is %.6g off, the scene's size is %.4g", s->name, off, s->scene_size);
+}
+
+// Error of the composite against Blender's picture, on whole and on partly covered pixels.
+static void composite_errors(const run *x, double *inside, double *edges)
+{
+    double sum[2] = {0}, n[2] = {0};
+    for (int i = 0; i < x->s.width * x->s.height; i++) {
+        double k = (double)x->r.gb.coverage[i];
+        if (k <= 0.0) continue;
+        int edge = k < 1.0;
+        for (int c = 0; c < 3; c++) {
+            double d = (double)x->r.layers[LAYER_COMPOSITE][3 * i + c] - (double)x->s.beauty[3 * i + c];
+            sum[edge] += d * d;
+            n[edge] += 1;
+        }
+    }
+    *inside = sqrt(sum[0] / n[0]);
+    *edges = sqrt(sum[1] / n[1]);
+}
+
+static void samples_beat_the_best_constant(void **state)
+{
+    (void)state;
+    static run x;
+    sample list[SAMPLE_MAX];
+    error e = {0};
+    int n = samples_list(getenv("SSDO_SAMPLES") ? getenv("SSDO_SAMPLES") : "samples", list, SAMPLE_MAX, &e);
+    must(n >= 2, &e);
+    for (int i = 0; i < n; i++) {
+        run_sample(&x, &list[i]);
+        const sample *s = &x.s;
+        if (!getenv("SSDO_FIGURES_ONLY")) camera_is_blenders(&x);
+        score o = sample_score(s, x.r.layers[LAYER_OCCLUSION], s->ao[0], s->ao[1], 1);
+        score d = sample_score(s, x.r.layers[LAYER_RADIANCE], s->direct[0], s->direct[1], 3);
+        score b = sample_score(s, x.r.layers[LAYER_INDIRECT], s->indirect[0], s->indirect[1], 3);
+        double inside, edges;
+        composite_errors(&x, &inside, &edges);
+        printf("figure: %-8s occlusion rmse %.3f bias %+.3f (best constant %.3f); radiance relative rmse %.2f (constant %.2f); "
+               "indirect correlation %.2f gain %.1f; composite rmse inside %.3f edges %.3f\n",
+               s->name, o.rmse, o.bias, o.constant_rmse, d.rmse / d.mean, d.constant_rmse / d.mean, b.correlation, b.gain, inside,
+               edges);
+        fflush(stdout);
+        bool judged = strcmp(s->name, "still") == 0 || strcmp(s->name, "horizon") == 0;
+        if (judged && getenv("SSDO_FIGURES_ONLY") == NULL) {
+            assert_true(o.rmse < o.constant_rmse);
+            assert_true(d.rmse < d.constant_rmse);
+            assert_true(b.correlation > 0.4);
+            assert_true(edges <= 1.5 * inside);
+        }
+        run_free(&x);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(samples_beat_the_best_constant)};
+    return cmocka_run_group_tests_name("samples", tests, NULL, NULL);
+}
