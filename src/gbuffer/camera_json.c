@@ -93,8 +93,8 @@ bool camera_from_json(const char *path, box2 data, box2 display, double pixel_as
     if (!s.root) {
         const char *why = json_util_get_last_err(); // ends in a newline
         int length = why ? (int)strcspn(why, "\n") : 0;
-        return err_set(e, ERR_USAGE, path, NULL, "the camera file cannot be read as JSON%s%.200s", why ? ": " : "",
-                       why ? why : "");
+        return err_set(e, ERR_USAGE, path, NULL, "the camera file cannot be read as JSON%s%.*s", why ? ": " : "",
+                       length < 200 ? length : 200, why ? why : "");
     }
     bool good = json_object_is_type(s.root, json_type_object) || refuse(&s, "the camera file must hold one JSON object");
     good = good && read_lens(&s, data, display, pixel_aspect, out) && read_pose(&s, out);

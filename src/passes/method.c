@@ -29,6 +29,45 @@ const method methods[] = {
         .bounce = NULL,
         .run = pass_alchemy,
     },
+    {
+        .name = "arc",
+        .summary = "arcs blocked by runs of connected surface in slices around the view vector",
+        .weighting = "cosine",
+        .reach = "surfaces within the radius",
+        .blind = "what neither the camera sees nor a plane continues",
+        .samples = 256,
+        .blur = 2,
+        .thickness = 0.5,
+        .fills_radiance = false,
+        .bounce = NULL,
+        .run = pass_arc,
+    },
+    {
+        .name = "gtao",
+        .summary = "horizons in slices around the view vector (Jimenez et al. 2016)",
+        .weighting = "cosine",
+        .reach = "surfaces within the radius",
+        .blind = "all behind a horizon: thin surfaces darken too much; light is SH irradiance times occlusion",
+        .samples = 256,
+        .blur = 2,
+        .thickness = 0.0,
+        .fills_radiance = false,
+        .bounce = NULL,
+        .run = pass_gtao,
+    },
+    {
+        .name = "bitmask",
+        .summary = "visibility bitmask of constant thickness (Therrien et al. 2023), sectors of equal cosine weight",
+        .weighting = "cosine",
+        .reach = "surfaces within the radius",
+        .blind = "gaps between samples; light is SH irradiance times occlusion",
+        .samples = 256,
+        .blur = 2,
+        .thickness = 0.3,
+        .fills_radiance = false,
+        .bounce = NULL,
+        .run = pass_bitmask,
+    },
     {0},
 };
 
@@ -39,4 +78,4 @@ const method *method_find(const char *name)
     return NULL;
 }
 
-const char *method_names(void) { return "ssdo, alchemy"; }
+const char *method_names(void) { return "ssdo, alchemy, arc, gtao, bitmask"; }

@@ -22,6 +22,7 @@ typedef struct pass_timing {
 typedef struct pass_settings {
     double radius;    // scene units
     double thickness; // scene units; INFINITY allowed
+    bool thickness_fixed; // asked for by the user: no method may find a better one
     int samples;
     int blur; // pixels, 0 none
     double scale, contrast;
@@ -82,6 +83,9 @@ bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, er
 // ---- the passes, one file and one shader each
 // ------------------------------------------------------------------------------------
 bool pass_alchemy(pass_context *c, error *e);     // -> occlusion (1 - S, before its bounds)
+bool pass_arc(pass_context *c, error *e);         // -> occlusion, radiance, indirect
+bool pass_gtao(pass_context *c, error *e);        // -> occlusion
+bool pass_bitmask(pass_context *c, error *e);     // -> occlusion
 bool pass_ssdo(pass_context *c, error *e);        // -> occlusion, radiance, visibility
 bool pass_ssdo_bounce(pass_context *c, error *e); // radiance or beauty, albedo -> indirect
 bool pass_blur(pass_context *c, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e); // in place; NULL = none

@@ -105,6 +105,14 @@ static exr_file *open_all(const char *path, error *e)
     return NULL;
 }
 
+float *sample_read(const char *path, const char *layer, const char *letters, error *e)
+{
+    exr_file *f = open_all(path, e);
+    float *v = f ? take(f, layer, letters, e) : NULL;
+    exr_file_close(f);
+    return v;
+}
+
 bool sample_load(sample *s, error *e)
 {
     exr_file *main = open_all(s->file, e), *truth = main ? open_all(s->truth, e) : NULL;

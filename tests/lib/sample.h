@@ -27,6 +27,9 @@ int samples_list(const char *dir, sample *list, int max, error *e);
 bool sample_load(sample *s, error *e);
 void sample_free(sample *s);
 
+// One layer of part 0 of a file as floats, interleaved: components `letters`. NULL with the error filled. The caller frees.
+float *sample_read(const char *path, const char *layer, const char *letters, error *e);
+
 static inline bool sample_is_surface(const sample *s, int i) { return s->depth[i] > 0.0f && s->depth[i] < 1e9f; }
 
 typedef struct score {

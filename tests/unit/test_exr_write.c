@@ -264,9 +264,21 @@ static void test_folders(void **state)
         if (i == 0) assert_non_null(strstr(e.message, missing));
         if (i == 1) assert_non_null(strstr(e.message, "/proc"));
     }
+    free_image(&im);
+}
+
+// A pipe of our own, never a real device: code that fails this test, run as root, would replace what it was pointed at.
+static void test_only_regular_files_are_replaced(void **state)
+{
+    (void)state;
     error e = {0};
-    assert_false(exr_write("/dev/null", &im.part, 1, 1, &e));
+    image im;
+    struct stat st;
+    make_image(&im, 2, 2, EXR_COMPRESSION_ZIP, false);
+    assert_int_equal(mkfifo(in_scratch("pipe"), 0600), 0);
+    assert_false(exr_write(in_scratch("pipe"), &im.part, 1, 1, &e));
     assert_int_equal(e.code, ERR_OUTPUT);
+    assert_true(lstat(in_scratch("pipe"), &st) == 0 && S_ISFIFO(st.st_mode));
     free_image(&im);
 }
 
@@ -329,6 +341,7 @@ int main(void)
         cmocka_unit_test(test_refusals_leave_the_target),
         cmocka_unit_test(test_full_disk),
         cmocka_unit_test(test_folders),
+        cmocka_unit_test(test_only_regular_files_are_replaced),
         cmocka_unit_test(test_replacing_keeps_link_and_rights),
         cmocka_unit_test(test_other_programs_read_it),
     };

@@ -122,8 +122,52 @@ static void samples_beat_the_best_constant(void **state)
     }
 }
 
+// Correlation of our radiance with Blender's direct light in a scene lit by one hot texel, the environment turned by `rotate`.
+static double hot_correlation(double rotate)
+{
+    error e = {0};
+    options o;
+    log_t log;
+    job j;
+    frame_result r;
+    options_defaults(&o);
+    o.env = "tests/golden/hot_env.exr";
+    o.env_rotate = rotate;
+    o.samples = 1024;
+    o.keep_none = true;
+    char output[64];
+    snprintf(output, sizeof output, "/tmp/ssdo_hot_%d.exr", (int)getpid());
+    log_init(&log, LOG_QUIET);
+    must(job_open(&j, &o, &log, &e), &e);
+    must(frame_run(&j, "tests/golden/hot.exr", output, &r, &e), &e);
+    float *truth = sample_read("tests/golden/hot.exr", "ViewLayer.DiffDir", "RGB", &e);
+    must(truth != NULL, &e);
+    double n = 0, sx = 0, st = 0, sxx = 0, stt = 0, sxt = 0;
+    for (int i = 0; i < r.gb.width * r.gb.height; i++) {
+        double x = (double)r.layers[LAYER_RADIANCE][3 * i], t = (double)truth[3 * i];
+        if (r.gb.depth[i] > 0.0f) n += 1, sx += x, st += t, sxx += x * x, stt += t * t, sxt += x * t;
+    }
+    free(truth);
+    remove(output);
+    frame_free(&r);
+    job_close(&j);
+    log_free(&log);
+    return (sxt / n - sx / n * st / n) / sqrt((sxx / n - sx / n * sx / n) * (stt / n - st / n * st / n));
+}
+
+// One hot texel in a black map lights the side that Blender lights, and no other.
+static void hot_texel_lights_the_right_side(void **state)
+{
+    (void)state;
+    double right = hot_correlation(0.0), turned = hot_correlation(180.0), quarter = hot_correlation(90.0);
+    printf("figure: hot texel: correlation with Blender %.3f (turned by 90 degrees %.3f, by 180 %.3f)\n", right, quarter, turned);
+    assert_true(right > 0.7);
+    assert_true(turned < 0.5 * right && quarter < 0.8 * right);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(samples_beat_the_best_constant)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(hot_texel_lights_the_right_side),
+                                       cmocka_unit_test(samples_beat_the_best_constant)};
     return cmocka_run_group_tests_name("samples", tests, NULL, NULL);
 }

@@ -1,0 +1,135 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "bench.h"
+
+static const int budgets[] = {8, 16, 32, 64, 128, 256, 512, 1024};
+enum { BUDGETS = sizeof budgets / sizeof *budgets };
+
+// Rows besides a method's own: the same shader under another assumption.
+static const struct {
+    const char *method, *suffix;
+    double thickness;
+} variants[] = {
+    {"ssdo", ", no thickness", INFINITY},
+    {"gtao", ", thickness 0.3 R", 0.3},
+};
+
+static bench_row row_of(const method *m, const char *suffix, int samples, int blur)
+{
+    bench_row r = {.kind = ROW_METHOD, .m = m, .samples = samples, .blur = blur, .thickness = -1.0, .scale = 1.0, .contrast = 1.0};
+    snprintf(r.name, sizeof r.name, "%s%s", m->name, suffix);
+    return r;
+}
+
+static int oracles(bench_row *rows)
+{
+    static const struct {
+        row_kind kind;
+        const char *name;
+    } list[] = {{ROW_OPEN, "constant 1"},
+                {ROW_CONSTANT, "best constant (oracle)"},
+                {ROW_IRRADIANCE, "irradiance(n)"},
+                {ROW_TRUE_AO, "irradiance(n) x true AO (oracle)"}};
+    int n = 0;
+    for (; n < 4; n++) {
+        rows[n] = (bench_row){.kind = list[n].kind, .standard = true};
+        snprintf(rows[n].name, sizeof rows[n].name, "%s", list[n].name);
+    }
+    return n;
+}
+
+static int method_rows(const method *m, bench_row *rows)
+{
+    int n = 0;
+    for (int i = 0; i < BUDGETS; i++) rows[n++] = row_of(m, "", budgets[i], 0);
+    rows[n++] = row_of(m, "", m->samples, m->blur);
+    rows[n - 1].standard = true;
+    bool listed = m->blur == 0;
+    for (int i = 0; i < BUDGETS; i++) listed |= budgets[i] == m->samples;
+    if (!listed) rows[n++] = row_of(m, "", m->samples, 0);
+    if (m->blur > 0) rows[n++] = row_of(m, "", m->samples * 4, m->blur);
+    for (size_t v = 0; v < sizeof variants / sizeof *variants; v++) {
+        if (strcmp(variants[v].method, m->name) != 0) continue;
+        for (int i = 2; i < BUDGETS; i += 2) {
+            rows[n] = row_of(m, variants[v].suffix, budgets[i], 0);
+            rows[n++].thickness = variants[v].thickness;
+        }
+        rows[n] = row_of(m, variants[v].suffix, m->samples, m->blur);
+        rows[n].standard = true;
+        rows[n++].thickness = variants[v].thickness;
+    }
+    return n;
+}
+
+int bench_rows(bench_row *rows, int max, double scale, double contrast)
+{
+    enum { MOST = 24 }; // of one method
+    int n = oracles(rows);
+    for (const method *m = methods; m->name && n + 2 * MOST < max; m++) {
+        n += method_rows(m, rows + n);
+        if (strcmp(m->name, "alchemy") != 0) continue;
+        for (int i = 0; i < BUDGETS - 1; i++) {
+            bench_row r = row_of(m, ", best scale and contrast", budgets[i], m->blur);
+            r.scale = scale, r.contrast = contrast;
+            r.standard = r.samples == m->samples;
+            rows[n++] = r;
+        }
+    }
+    return n;
+}
+
+// ---- Alchemy's best look
+
+typedef struct look_sums {
+    float *s, *a, *b; // obscurance and both truths at the pixels that count
+    size_t count;
+} look_sums;
+
+// Every ninth surface pixel: the choice of two numbers does not need all.
+static bool collect(rig *r, const bench_scene *b, look_sums *out, error *e)
+{
+    const double quarter = 0.25; // 1 - S / 4 stays clear of the layer's bounds
+    bench_row row = row_of(method_find("alchemy"), "", method_find("alchemy")->samples, method_find("alchemy")->blur);
+    row.scale = quarter;
+    frame_result f;
+    size_t n = (size_t)b->gb.width * (size_t)b->gb.height, seen = 0;
+    if (!bench_run(r, b, &row, 1 << LAYER_OCCLUSION, &f, NULL, e)) return false;
+    out->s = mem_pixels(n, sizeof(float), e), out->a = mem_pixels(n, sizeof(float), e), out->b = mem_pixels(n, sizeof(float), e);
+    for (size_t i = 0; out->s && out->a && out->b && i < n; i++) {
+        if (!sample_is_surface(&b->s, (int)i) || seen++ % 9) continue;
+        out->s[out->count] = (1.0f - f.layers[LAYER_OCCLUSION][i]) / (float)quarter;
+        out->a[out->count] = b->s.ao[0][i];
+        out->b[out->count++] = b->s.ao[1][i];
+    }
+    rig_free_result(&f);
+    return out->s && out->a && out->b;
+}
+
+static double error_of(const look_sums *l, double scale, double contrast)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < l->count; i++) {
+        double x = pow(fmax(0.0, 1.0 - scale * (double)l->s[i]), contrast);
+        sum += (x - (double)l->a[i]) * (x - (double)l->b[i]);
+    }
+    return l->count ? sum / (double)l->count : 0.0;
+}
+
+bool bench_fit_alchemy(rig *r, const bench_scene *scenes, int count, double *scale, double *contrast, error *e)
+{
+    look_sums l[BENCH_SCENES] = {0};
+    double best = INFINITY;
+    bool ok = method_find("alchemy") != NULL;
+    for (int i = 0; ok && i < count; i++) ok = collect(r, &scenes[i], &l[i], e);
+    for (int a = 2; ok && a <= 30; a++)
+        for (int c = 2; c <= 12; c++) {
+            double sum = 0.0;
+            for (int i = 0; i < count; i++) sum += error_of(&l[i], 0.1 * a, 0.25 * c);
+            if (sum < best) best = sum, *scale = 0.1 * a, *contrast = 0.25 * c;
+        }
+    for (int i = 0; i < count; i++) free(l[i].s), free(l[i].a), free(l[i].b);
+    return ok;
+}

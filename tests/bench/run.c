@@ -1,0 +1,134 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "bench.h"
+#include "light/sh.h"
+
+pass_settings bench_settings(const bench_row *row, const bench_scene *b)
+{
+    pass_settings set = rig_settings(row->m, b->radius);
+    set.thickness = (row->thickness < 0.0 ? row->m->thickness : row->thickness) * b->radius;
+    set.samples = row->samples;
+    set.blur = row->blur;
+    set.scale = row->scale;
+    set.contrast = row->contrast;
+    return set;
+}
+
+unsigned bench_layers(const bench_row *row)
+{
+    if (row->kind != ROW_METHOD) return 0;
+    return 1u << LAYER_OCCLUSION | 1u << LAYER_RADIANCE | (row->m->bounce ? 1u << LAYER_INDIRECT : 0u);
+}
+
+// The rig's environment is the scene's for the time of a run; the scene keeps owning it.
+bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned layers, frame_result *out, bench_time *t, error *e)
+{
+    pass_settings set = bench_settings(row, b);
+    r->job.env = b->env;
+    r->job.env_image = b->env_image;
+    r->job.env_loaded = true;
+    r->options.report = "timed"; // a report makes the passes wait and take their times
+    bool ok = rig_run(r, &b->gb, row->m, &set, layers, out, e);
+    r->job.env_loaded = false;
+    r->job.env_image = (gpu_image){0};
+    for (int i = 0; ok && t && i < out->timing_count; i++)
+        if (strcmp(out->timings[i].name, "upload") != 0) t->cpu += out->timings[i].cpu_ms, t->wall += out->timings[i].wall_ms;
+    return ok;
+}
+
+// ---- pictures of rows that are no method
+
+static float *filled(const sample *s, int channels, error *e)
+{
+    return mem_zero((size_t)s->width * (size_t)s->height * (size_t)channels, sizeof(float), e);
+}
+
+static float *constant(const sample *s, int channels, float *const truth[2], bool one, error *e)
+{
+    size_t n = (size_t)s->width * (size_t)s->height;
+    float *x = filled(s, channels, e);
+    for (int k = 0; x && k < channels; k++) {
+        double sum = 0.0, count = 0.0;
+        for (size_t i = 0; i < n; i++)
+            if (sample_is_surface(s, (int)i)) {
+                size_t j = i * (size_t)channels + (size_t)k;
+                sum += 0.5 * ((double)truth[0][j] + (double)truth[1][j]), count += 1.0;
+            }
+        for (size_t i = 0; i < n; i++) x[i * (size_t)channels + (size_t)k] = one ? 1.0f : (float)(sum / count);
+    }
+    return x;
+}
+
+// What a compositor gets by multiplying an irradiance map, looked up with the normal, by an occlusion.
+static float *irradiance(const bench_scene *b, bool occluded, error *e)
+{
+    const sample *s = &b->s;
+    size_t n = (size_t)s->width * (size_t)s->height;
+    float *x = filled(s, 3, e);
+    const camera *c = &b->gb.camera;
+    mat3 m = m3_mul(b->env.map_from_world, c->has_world ? c->world_from_camera : m3_identity());
+    for (size_t i = 0; x && i < n; i++) {
+        const float *v = b->gb.normal + 4 * i;
+        vec3 l = sh_irradiance_over_pi(b->env.sh, m3_apply(m, v3((double)v[0], (double)v[1], (double)v[2])));
+        double k = occluded ? 0.5 * ((double)s->ao[0][i] + (double)s->ao[1][i]) : 1.0;
+        x[3 * i] = (float)(k * fmax(0.0, l.x)), x[3 * i + 1] = (float)(k * fmax(0.0, l.y));
+        x[3 * i + 2] = (float)(k * fmax(0.0, l.z));
+    }
+    return x;
+}
+
+static bool measure_oracle(const bench_scene *b, const bench_row *row, bench_cell *cell, error *e)
+{
+    const sample *s = &b->s;
+    float *ao = NULL, *direct = NULL, *indirect = NULL;
+    if (row->kind == ROW_OPEN) ao = constant(s, 1, s->ao, true, e);
+    if (row->kind == ROW_CONSTANT) {
+        ao = constant(s, 1, s->ao, false, e);
+        direct = constant(s, 3, s->direct, false, e);
+        indirect = constant(s, 3, s->indirect, false, e);
+    }
+    if (row->kind == ROW_IRRADIANCE || row->kind == ROW_TRUE_AO) direct = irradiance(b, row->kind == ROW_TRUE_AO, e);
+    if (e->code == ERR_NONE) {
+        cell->has_occlusion = ao, cell->has_radiance = direct, cell->has_indirect = indirect;
+        if (ao) cell->occlusion = sample_score(s, ao, s->ao[0], s->ao[1], 1);
+        if (direct) cell->radiance = sample_score(s, direct, s->direct[0], s->direct[1], 3);
+        if (indirect) cell->indirect = sample_score(s, indirect, s->indirect[0], s->indirect[1], 3);
+    }
+    free(ao);
+    free(direct);
+    free(indirect);
+    return e->code == ERR_NONE;
+}
+
+static void compare(const bench_scene *b, const float *occlusion, const double *expected, bench_cell *cell)
+{
+    double square = 0.0, sum = 0.0;
+    for (int i = 0; i < b->pixel_count; i++) {
+        double d = (double)occlusion[b->pixels[i].y * b->gb.width + b->pixels[i].x] - expected[i];
+        square += d * d, sum += d;
+    }
+    cell->has_a = true;
+    cell->a_rmse = sqrt(square / b->pixel_count);
+    cell->a_bias = sum / b->pixel_count;
+}
+
+bool bench_measure(rig *r, const bench_scene *b, const bench_row *row, const char *cache, bench_cell *cell, error *e)
+{
+    if (row->kind != ROW_METHOD) return measure_oracle(b, row, cell, e);
+    frame_result f;
+    const sample *s = &b->s;
+    unsigned layers = bench_layers(row);
+    if (!bench_run(r, b, row, layers, &f, NULL, e)) return false;
+    cell->has_occlusion = cell->has_radiance = true;
+    cell->has_indirect = layers & 1u << LAYER_INDIRECT;
+    cell->occlusion = sample_score(s, f.layers[LAYER_OCCLUSION], s->ao[0], s->ao[1], 1);
+    cell->radiance = sample_score(s, f.layers[LAYER_RADIANCE], s->direct[0], s->direct[1], 3);
+    if (cell->has_indirect) cell->indirect = sample_score(s, f.layers[LAYER_INDIRECT], s->indirect[0], s->indirect[1], 3);
+    double *expected = bench_reference(b, row, cache, e);
+    if (expected) compare(b, f.layers[LAYER_OCCLUSION], expected, cell);
+    free(expected);
+    rig_free_result(&f);
+    return e->code == ERR_NONE;
+}
