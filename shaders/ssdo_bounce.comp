@@ -35,7 +35,7 @@ void main() {
         Sample s = ssdo_sample(i, P, tangents, noise);
         if (!s.blocked) continue;
         blocked += s.cosine;
-        vec3 to_sender = position_of(s.sender, depth_at(s.sender)) - P;
+        vec3 to_sender = s.surface - P;
         float dd = dot(to_sender, to_sender);
         if (dd <= 0.0) continue;
         float d = sqrt(dd);

@@ -17,6 +17,7 @@ struct Sample {
     float cosine;   // with the receiver's normal, > 0
     bool blocked;
     ivec2 sender;   // the pixel that blocks
+    vec3 surface;   // where its surface meets the ray of the sample
 };
 
 // Depth, on the ray of `point`, of the surface recorded at pixel q, which is its tangent plane. Taking the pixel centre's depth
@@ -43,13 +44,16 @@ Sample ssdo_sample(int i, vec3 P, mat3 tangents, vec2 noise) {
     vec3 point = P + lambda * s.direction;
     s.blocked = false;
     s.sender = ivec2(-1);
+    s.surface = P;
     if (!in_front(point)) return s;
     vec2 screen = screen_of(point);
     ivec2 q = ivec2(floor(screen));
     float depth = depth_at(q);
     if (depth == 0.0) return s; // no surface recorded there, or outside the frame: open
-    float behind = point.z - recorded_depth(q, depth, point, screen);
+    float recorded = recorded_depth(q, depth, point, screen);
+    float behind = point.z - recorded;
     s.blocked = behind > 8.0 * rounding(point) && behind <= params.thickness;
     s.sender = q;
+    s.surface = position_at(screen, recorded);
     return s;
 }

@@ -115,8 +115,8 @@ typedef struct bench_results {
     int scene_count;
     const bench_row *rows;
     int row_count, rounds;
-    const bench_cell *cells;                       // [row * scene_count + scene]
-    bench_time yard[BENCH_SCENES][BENCH_ROUNDS];   // [scene][round]
+    const bench_cell *cells;                     // [row * scene_count + scene]
+    bench_time yard[BENCH_SCENES][BENCH_ROUNDS]; // [scene][round]
     double alchemy_scale, alchemy_contrast;
     double empty_ratio; // GL time of a frame nine tenths empty, share of the full one's
     double seconds;
@@ -127,9 +127,9 @@ typedef struct bench_summary {
     int scenes;
     double occlusion, radiance, indirect; // rms; relative for the light; NAN where the row makes none
     double a;
-    double cpu, wall, all_cpu;  // ms per megapixel, means over the scenes
-    double yards, all_yards;    // in yardsticks of the same round and scene
-    bool front;                 // on the Pareto front of occlusion against time
+    double cpu, wall, all_cpu; // ms per megapixel, means over the scenes
+    double yards, all_yards;   // in yardsticks of the same round and scene
+    bool front;                // on the Pareto front of occlusion against time
 } bench_summary;
 
 enum { SET_SAMPLES, SET_GENERATED };
@@ -138,8 +138,8 @@ double bench_median(const double *values, int count);
 double bench_percentile(const double *values, int count, double share);
 double bench_megapixels(const bench_scene *b);
 // Median over the rounds of cpu, of cpu in yardsticks, and of wall time.
-bench_time bench_cell_time(const bench_results *r, int row, int scene, bool all);
-double bench_cell_yards(const bench_results *r, int row, int scene, bool all);
+bench_time bench_cell_time(const bench_results *r, int row, int which, bool all);
+double bench_cell_yards(const bench_results *r, int row, int which, bool all);
 
 bool bench_write_csv(const bench_results *r, const char *dir, error *e);
 bool bench_write_markdown(const bench_results *r, const char *dir, error *e);

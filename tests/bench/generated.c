@@ -60,7 +60,8 @@ static bool rock_make(rock *r, vec3 at, double size, double phase, error *e)
     free(scratch);
     for (int i = 0; i < r->vertex_count; i++) {
         vec3 d = r->vertices[i];
-        double bump = 1.0 + 0.18 * sin(5.0 * d.x + phase) * sin(4.0 * d.y + 2.0 * phase) + 0.1 * sin(9.0 * d.z + 7.0 * d.x + phase);
+        double bump =
+            1.0 + 0.18 * sin(5.0 * d.x + phase) * sin(4.0 * d.y + 2.0 * phase) + 0.1 * sin(9.0 * d.z + 7.0 * d.x + phase);
         r->vertices[i] = v3_add(at, v3_scale(v3(d.x, 0.8 * d.y, 0.6 * d.z), size * bump));
     }
     return true;
@@ -125,7 +126,8 @@ static cache_key truth_key(const bench_scene *b, const scene *s)
     k = cache_add(k, b->gb.normal, 4 * n * sizeof(float));
     k = cache_add(k, &b->radius, sizeof b->radius);
     for (int i = 0; i < s->shape_count; i++) k = cache_add(k, &s->shapes[i].albedo, sizeof(vec3));
-    return cache_add(k, b->env.levels[0].rgba, sizeof(float) * 4 * (size_t)b->env.levels[0].width * (size_t)b->env.levels[0].height);
+    return cache_add(k, b->env.levels[0].rgba,
+                     sizeof(float) * 4 * (size_t)b->env.levels[0].width * (size_t)b->env.levels[0].height);
 }
 
 // The six pictures lie in one block, so that the cache keeps them as one blob; sample_free frees the parts.
@@ -140,8 +142,7 @@ static bool truth_make(truth_job *j, const char *cache, error *e)
     if (e->code != ERR_NONE) return false;
     bool known = cache_load(cache, k, blob, total * sizeof *blob);
     if (!known) threads_for(threads_default(), (size_t)s->height, truth_row, j);
-    for (int i = 0; i < 6; at += sizes[i], i++)
-        memcpy(known ? *parts[i] : at, known ? at : *parts[i], sizes[i] * sizeof(float));
+    for (int i = 0; i < 6; at += sizes[i], i++) memcpy(known ? *parts[i] : at, known ? at : *parts[i], sizes[i] * sizeof(float));
     if (!known) cache_store(cache, k, blob, total * sizeof *blob);
     free(blob);
     return true;
@@ -162,8 +163,8 @@ static bool generate(bench_scene *b, const char *name, const scene *s, bool orth
     memcpy(b->s.depth, b->gb.depth, n * sizeof(float));
     bool meshes = s->shape_count > 0 && s->shapes[s->shape_count - 1].kind == SHAPE_MESH;
     embree *m = meshes ? embree_open(s, e) : NULL;
-    truth_job job = {b, s, &v, m ? embree_tracer(m) : scene_tracer(s), m ? 2e-4 : 0.0};
-    bool ok = (m || !meshes) && truth_make(&job, cache, e) && bench_prepare(b, e);
+    truth_job work = {b, s, &v, m ? embree_tracer(m) : scene_tracer(s), m ? 2e-4 : 0.0};
+    bool ok = (m || !meshes) && truth_make(&work, cache, e) && bench_prepare(b, e);
     embree_close(m);
     return ok;
 }
@@ -179,12 +180,9 @@ int bench_generated(const char *sky, const char *cache, rig *r, bench_scene *lis
         const char *name;
         void (*build)(scene *s);
         bool orthographic;
-    } simple[] = {{"clutter", scene_clutter, false},
-                  {"clutter-ortho", scene_clutter, true},
-                  {"corner", build_corner, false},
-                  {"sphere", build_sphere, false},
-                  {"slit", build_slit, false},
-                  {"bar", build_bar, false}};
+    } simple[] = {{"clutter", scene_clutter, false}, {"clutter-ortho", scene_clutter, true},
+                  {"corner", build_corner, false},   {"sphere", build_sphere, false},
+                  {"slit", build_slit, false},       {"bar", build_bar, false}};
     static scene s;
     rock rocks[ROCKS] = {0};
     int n = 0;

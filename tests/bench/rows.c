@@ -19,7 +19,8 @@ static const struct {
 
 static bench_row row_of(const method *m, const char *suffix, int samples, int blur)
 {
-    bench_row r = {.kind = ROW_METHOD, .m = m, .samples = samples, .blur = blur, .thickness = -1.0, .scale = 1.0, .contrast = 1.0};
+    bench_row r = {
+        .kind = ROW_METHOD, .m = m, .samples = samples, .blur = blur, .thickness = -1.0, .scale = 1.0, .contrast = 1.0};
     snprintf(r.name, sizeof r.name, "%s%s", m->name, suffix);
     return r;
 }

@@ -7,11 +7,8 @@
 
 bool bench_light(bench_scene *b, const char *path, double rotate, rig *r, error *e)
 {
-    env_options eo = {.path = path && *path ? path : NULL,
-                      .up_z = true,
-                      .rotate_degrees = rotate,
-                      .scale = 1.0,
-                      .threads = threads_default()};
+    env_options eo = {
+        .path = path && *path ? path : NULL, .up_z = true, .rotate_degrees = rotate, .scale = 1.0, .threads = threads_default()};
     return environment_load(&eo, &b->env, &r->log, e) && pass_upload_environment(&r->job.g, &b->env, &b->env_image, e);
 }
 

@@ -1,0 +1,231 @@
+// make bench: see bench.h.
+//   bench [--samples DIR] [--out DIR] [--cache DIR] [--rounds N] [--title TEXT] [--command TEXT] [--rendered-only]
+//   [--generated-only]
+#include <errno.h>
+#include <getopt.h>
+#include <locale.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+
+#include "base/mem.h"
+#include "bench.h"
+
+typedef struct arguments {
+    const char *samples, *out, *cache, *title, *command;
+    int rounds;
+    bool rendered, generated;
+} arguments;
+
+static bool parse(int argc, char **argv, arguments *a)
+{
+    static const struct option table[] = {
+        {"samples", 1, NULL, 's'}, {"out", 1, NULL, 'o'},     {"cache", 1, NULL, 'c'},         {"rounds", 1, NULL, 'r'},
+        {"title", 1, NULL, 't'},   {"command", 1, NULL, 'm'}, {"rendered-only", 0, NULL, 'R'}, {"generated-only", 0, NULL, 'G'},
+        {NULL, 0, NULL, 0}};
+    *a = (arguments){"samples", "build/bench", "build/bench-cache", "Bench", "make bench", 5, true, true};
+    for (int c; (c = getopt_long(argc, argv, "", table, NULL)) != -1;) {
+        if (c == 's') a->samples = optarg;
+        if (c == 'o') a->out = optarg;
+        if (c == 'c') a->cache = optarg;
+        if (c == 't') a->title = optarg;
+        if (c == 'm') a->command = optarg;
+        if (c == 'r') a->rounds = atoi(optarg);
+        if (c == 'R') a->generated = false;
+        if (c == 'G') a->rendered = false;
+        if (c == '?') return false;
+    }
+    return optind == argc && a->rounds >= 1 && a->rounds <= BENCH_ROUNDS;
+}
+
+static double seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void say(double start, const char *what) { fprintf(stderr, "bench: %4.0f s  %s\n", seconds() - start, what); }
+
+// Folders of a path, one after the other.
+static void make_folder(const char *path)
+{
+    char part[512];
+    for (size_t i = 1; i <= strlen(path) && i < sizeof part; i++)
+        if (path[i] == '/' || !path[i]) {
+            memcpy(part, path, i);
+            part[i] = 0;
+            mkdir(part, 0777);
+        }
+}
+
+static int open_scenes(const arguments *a, rig *r, bench_scene *list, error *e)
+{
+    char sky[512] = "";
+    int n = 0;
+    if (a->rendered && (n = bench_samples(a->samples, r, list, BENCH_SCENES, e)) == 0) return 0;
+    if (!a->generated) return n;
+    snprintf(sky, sizeof sky, "%s/sky_soft.exr", a->samples);
+    int more = bench_generated(sky, a->cache, r, list + n, BENCH_SCENES - n, e);
+    return more ? n + more : 0;
+}
+
+// Occlusion alone is another program than all layers; both are compiled before anything is timed.
+static bool measure_all(rig *r, bench_results *b, bench_cell *cells, const char *cache, double start, error *e)
+{
+    for (int s = 0; s < b->scene_count; s++) {
+        char text[128];
+        for (int i = 0; i < b->row_count; i++) {
+            frame_result f;
+            if (!bench_measure(r, &b->scenes[s], &b->rows[i], cache, &cells[i * b->scene_count + s], e)) return false;
+            if (b->rows[i].kind != ROW_METHOD || s > 0) continue;
+            if (!bench_run(r, &b->scenes[s], &b->rows[i], 1 << LAYER_OCCLUSION, &f, NULL, e)) return false;
+            rig_free_result(&f);
+        }
+        snprintf(text, sizeof text, "errors of %s", b->scenes[s].s.name);
+        say(start, text);
+    }
+    return true;
+}
+
+static bool time_row(rig *r, const bench_scene *s, const bench_row *row, bench_cell *cell, int round, error *e)
+{
+    frame_result f;
+    if (row->kind != ROW_METHOD) return true;
+    if (!bench_run(r, s, row, 1 << LAYER_OCCLUSION, &f, &cell->direct[round], e)) return false;
+    rig_free_result(&f);
+    if (!bench_run(r, s, row, bench_layers(row), &f, &cell->all[round], e)) return false;
+    rig_free_result(&f);
+    return true;
+}
+
+static bool time_round(rig *r, bench_results *b, bench_cell *cells, int round, error *e)
+{
+    for (int s = 0; s < b->scene_count; s++) {
+        enum { REPEATS = 3 };
+        yardstick y;
+        bench_time sum[2] = {0};
+        if (!yardstick_open(&y, b->scenes[s].gb.width, b->scenes[s].gb.height, e)) return false;
+        for (int i = 0; i < REPEATS; i++) {
+            bench_time t = yardstick_run(&y);
+            sum[0].cpu += t.cpu / (2 * REPEATS), sum[0].wall += t.wall / (2 * REPEATS);
+        }
+        bool ok = true;
+        for (int i = 0; ok && i < b->row_count; i++)
+            ok = time_row(r, &b->scenes[s], &b->rows[i], &cells[i * b->scene_count + s], round, e);
+        for (int i = 0; i < REPEATS; i++) { // the machine may have changed meanwhile: half before, half after
+            bench_time t = yardstick_run(&y);
+            sum[1].cpu += t.cpu / (2 * REPEATS), sum[1].wall += t.wall / (2 * REPEATS);
+        }
+        b->yard[s][round] = (bench_time){sum[0].cpu + sum[1].cpu, sum[0].wall + sum[1].wall};
+        yardstick_close(&y);
+        if (!ok) return false;
+    }
+    return true;
+}
+
+// GL time of the default method on a frame with one surface pixel in ten, in a block, against the frame full of surfaces.
+static bool measure_empty(rig *r, const bench_scene *s, double *ratio, error *e)
+{
+    enum { ROUNDS = 5 };
+    const method *m = &methods[METHOD_DEFAULT];
+    bench_row row = {
+        .kind = ROW_METHOD, .m = m, .samples = m->samples, .blur = m->blur, .thickness = -1, .scale = 1, .contrast = 1};
+    bench_scene empty = *s;
+    int w = s->gb.width, h = s->gb.height;
+    size_t n = (size_t)w * (size_t)h;
+    empty.gb.depth = mem_pixels(n, sizeof(float), e);
+    if (!empty.gb.depth) return false;
+    double side = sqrt(0.1);
+    for (int i = 0; i < w * h; i++) {
+        bool inside = fabs(i % w + 0.5 - 0.5 * w) < 0.5 * side * w && fabs(i / w + 0.5 - 0.5 * h) < 0.5 * side * h;
+        empty.gb.depth[i] = inside ? s->gb.depth[i] : 0.0f;
+    }
+    double ratios[ROUNDS];
+    bool ok = true;
+    for (int i = 0; ok && i < ROUNDS; i++) {
+        bench_time full = {0}, part = {0};
+        frame_result f;
+        ok = bench_run(r, s, &row, bench_layers(&row), &f, &full, e);
+        if (ok) rig_free_result(&f);
+        ok = ok && bench_run(r, &empty, &row, bench_layers(&row), &f, &part, e);
+        if (ok) rig_free_result(&f);
+        ratios[i] = part.cpu / full.cpu;
+    }
+    if (ok) *ratio = bench_median(ratios, ROUNDS);
+    free(empty.gb.depth);
+    return ok;
+}
+
+// The scene with the most surface: a full frame.
+static const bench_scene *fullest(const bench_scene *list, int n)
+{
+    const bench_scene *best = list;
+    for (int i = 1; i < n; i++) {
+        double a = (double)best->gb.valid / bench_megapixels(best), b = (double)list[i].gb.valid / bench_megapixels(&list[i]);
+        if (b > a) best = &list[i];
+    }
+    return best;
+}
+
+static int fit_count(const bench_scene *list, int n)
+{
+    int rendered = 0;
+    while (rendered < n && !list[rendered].generated) rendered++;
+    return rendered ? rendered : n;
+}
+
+static bool bench(const arguments *a, error *e)
+{
+    static rig r;
+    static bench_scene scenes[BENCH_SCENES];
+    static bench_row rows[BENCH_ROWS];
+    static bench_results b;
+    double start = seconds();
+    make_folder(a->out);
+    make_folder(a->cache);
+    b = (bench_results){.title = a->title, .command = a->command, .rounds = a->rounds, .scenes = scenes, .rows = rows};
+    if (!rig_open(&r, NULL, e)) return false;
+    b.renderer = r.job.g.renderer;
+    b.scene_count = open_scenes(a, &r, scenes, e);
+    say(start, "scenes and their truth");
+    bench_cell *cells = NULL;
+    bool ok = b.scene_count > 0 &&
+              bench_fit_alchemy(&r, scenes, fit_count(scenes, b.scene_count), &b.alchemy_scale, &b.alchemy_contrast, e);
+    if (ok) {
+        b.row_count = bench_rows(rows, BENCH_ROWS, b.alchemy_scale, b.alchemy_contrast);
+        b.cells = cells = mem_zero((size_t)b.row_count * (size_t)b.scene_count, sizeof *cells, e);
+        ok = cells && measure_all(&r, &b, cells, a->cache, start, e);
+    }
+    for (int i = 0; ok && i < a->rounds; i++) {
+        ok = time_round(&r, &b, cells, i, e);
+        say(start, "a round of times");
+    }
+    ok = ok && measure_empty(&r, fullest(scenes, b.scene_count), &b.empty_ratio, e);
+    b.seconds = seconds() - start;
+    ok = ok && bench_write_csv(&b, a->out, e) && bench_write_markdown(&b, a->out, e) && bench_write_plot(&b, a->out, e);
+    for (int i = 0; i < b.scene_count; i++) bench_scene_free(&scenes[i]);
+    rig_close(&r);
+    free(cells);
+    if (ok)
+        fprintf(stderr, "bench: %4.0f s  wrote %s/bench.md, bench.csv, errors.csv, bench.svg, bench.png\n", b.seconds, a->out);
+    return ok;
+}
+
+int main(int argc, char **argv)
+{
+    arguments a;
+    error e = {0};
+    char text[1600];
+    setlocale(LC_NUMERIC, "C");
+    if (!parse(argc, argv, &a)) {
+        fprintf(stderr, "bench: unknown option or a number of rounds outside 1..%d\n", BENCH_ROUNDS);
+        return ERR_USAGE;
+    }
+    if (bench(&a, &e)) return 0;
+    err_format(&e, text, sizeof text);
+    fprintf(stderr, "bench: %s\n", text);
+    return (int)e.code;
+}
