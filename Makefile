@@ -1,11 +1,13 @@
 # ssdo-filter. `make demo` and `make check` are all a newcomer needs; `make help` lists the rest.
-VERSION  := $(shell cat VERSION)
+VERSION  := 0.1.0
 PREFIX   ?= /usr/local
 DESTDIR  ?=
 BINDIR   := $(PREFIX)/bin
 LIBDIR   := $(PREFIX)/lib/ssdo-filter
 MANDIR   := $(PREFIX)/share/man/man1
 BUILD    ?= build
+JOBS     := $(if $(findstring j,$(MAKEFLAGS)),,-j$(shell nproc)) # of the inner make, when the user gave none
+Q        := $(if $(V),,@)# make V=1 shows the commands
 ifeq ($(origin CC),default)
 CC       := gcc
 endif
@@ -40,6 +42,7 @@ PLUGIN   := $(BUILD)/ssdo-images.so
 UNIT     := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))
 TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
 
+.SECONDARY: # keep test objects
 .PHONY: all deps deps-check deps-bench demo check lint format clean install uninstall help
 all: $(BIN) $(PLUGIN)
 
@@ -49,53 +52,56 @@ help:
 	@echo 'make all | lint | format | install PREFIX= DESTDIR= | uninstall | clean'
 
 $(BIN): $(BUILD)/src/main.o $(BUILD)/libssdo.a
-	$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
+	@echo "  link $@"
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
 
 $(BUILD)/libssdo.a: $(OBJ)
 	@rm -f $@
 	@ar rcsD $@ $^
 
-$(BUILD)/%.o: %.c VERSION | deps-stamp
+$(BUILD)/%.o: %.c | deps-stamp
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
+	@echo "  cc   $<"
+	$(Q)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
 
 # Shaders travel inside the binary; SSDO_SHADER_DIR reads them from a folder instead.
-$(BUILD)/shaders.c: $(GLSL) tools/embed.sh
+$(BUILD)/shaders.c: $(GLSL) shaders/embed.sh
 	@mkdir -p $(@D)
-	sh tools/embed.sh shaders $(GLSL) >$@.tmp && mv $@.tmp $@
+	$(Q)sh shaders/embed.sh shaders $(GLSL) >$@.tmp && mv $@.tmp $@
 $(BUILD)/shaders.o: $(BUILD)/shaders.c src/gpu/shaders.h
-	$(CC) $(ALL_CFLAGS) -c -o $@ $<
+	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $<
 
 # OpenImageIO lives in a module of its own, opened on demand: linking it costs every run 290 ms.
 $(PLUGIN): $(wildcard src/plugin/*.cpp) $(wildcard src/plugin/*.h) | deps-stamp
 	@mkdir -p $(@D)
-	$(CXX) $(ALL_CXXFLAGS) -shared -o $@ $(filter %.cpp,$^) $$(pkg-config --cflags --libs OpenImageIO OpenColorIO) $(LDFLAGS)
+	@echo "  c++  $@"
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -shared -o $@ $(filter %.cpp,$^) $$(pkg-config --cflags --libs OpenImageIO OpenColorIO) $(LDFLAGS)
 
 $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(TESTLIB) $(BUILD)/libssdo.a
 	@mkdir -p $(@D)
-	$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(PKG_LIBS)
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(PKG_LIBS)
 
 # Order-only: checks once per make run that the packages of the build are there.
 .PHONY: deps-stamp
-deps-stamp: ; @sh tools/deps.sh --quiet $(DEPS_BUILD)
-deps:       ; @sh tools/deps.sh $(DEPS_BUILD)
-deps-check: ; @sh tools/deps.sh $(DEPS_BUILD) $(DEPS_CHECK)
-deps-bench: ; @sh tools/deps.sh $(DEPS_BUILD) $(DEPS_CHECK) $(DEPS_BENCH)
+deps-stamp: ; @sh tests/deps.sh --quiet $(DEPS_BUILD)
+deps:       ; @sh tests/deps.sh $(DEPS_BUILD)
+deps-check: ; @sh tests/deps.sh $(DEPS_BUILD) $(DEPS_CHECK)
+deps-bench: ; @sh tests/deps.sh $(DEPS_BUILD) $(DEPS_CHECK) $(DEPS_BENCH)
 
 demo: deps
-	@$(MAKE) --no-print-directory all
+	@$(MAKE) $(JOBS) --no-print-directory all
 	@sh samples/demo.sh $(BIN) $(BUILD)
 
 check: deps-check
-	@$(MAKE) --no-print-directory all lint unit
+	@$(MAKE) $(JOBS) --no-print-directory all lint unit
 	@sh tests/run.sh $(BUILD) $(UNIT)
 
 .PHONY: unit
 unit: $(UNIT)
 
 lint: deps-check
-	@sh tools/lint.sh $(BUILD)
-	@$(MAKE) --no-print-directory BUILD=$(BUILD)/lint EXTRA_CFLAGS=-Werror all
+	@sh tests/lint.sh $(BUILD)
+	@$(MAKE) $(JOBS) --no-print-directory BUILD=$(BUILD)/lint EXTRA_CFLAGS=-Werror all
 
 format: ; clang-format -i $$(git ls-files 'src/*.[ch]' 'src/*.cpp' 'tests/*.[ch]')
 

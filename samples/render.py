@@ -616,9 +616,10 @@ def build_horizon(layout):
     face = math.degrees(math.atan2(py + 9.0, px - 0.8)) - 90.0
     monkey(layout.pick(1.7, 1.4, 2.0), layout.matte(0.66, 0.46, 0.32), (px, py, 1.47), (-12, 4, face + layout.pick(14.0, -40.0, 40.0)))
     taken.append((px, py, 1.6))
-    ball(layout.pick(0.95, 0.6, 1.3), layout.matte(0.70, 0.70, 0.68),
-         (layout.pick(-2.4, -4.0, -1.8), layout.pick(0.6, -1.0, 2.5), 0.0))
-    taken.append((-2.5, 0.8, 1.6))
+    size, paint = layout.pick(0.95, 0.6, 1.3), layout.matte(0.70, 0.70, 0.68)
+    bx, by = layout.pick(-2.4, -4.0, -1.8), layout.pick(0.6, -1.0, 2.5)
+    ball(size, paint, (bx, by, 0.0))
+    taken.append((bx, by, size + 0.4))
     if layout.variant == 0:
         box((1.5, 1.5, 1.5), diffuse((0.55, 0.14, 0.09)), (4.3, 4.0, 0.0), (0, 0, 33))
         box((0.9, 0.9, 0.9), diffuse((0.20, 0.34, 0.45)), (4.15, 4.05, 1.5), (0, 0, 71))
@@ -962,7 +963,7 @@ def settings(size, spp, seed, transparent, bounces):
     scene.render.use_compositing = scene.render.use_sequencer = False
     scene.render.dither_intensity = 0.0
     for stamp in ("date", "time", "render_time", "memory", "filename", "hostname"):
-        setattr(scene.render, "use_stamp_" + stamp, False)  # so that the same scene gives the same bytes
+        setattr(scene.render, "use_stamp_" + stamp, False)  # leaves only Cycles' own times in the header
     c = scene.cycles
     c.device = "CPU"
     c.samples, c.seed = spp, seed
