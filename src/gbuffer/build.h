@@ -81,6 +81,14 @@ static inline vec3 build_position(const build *b, int x, int y)
     return v3(plane_get(&b->position[0], x, y), plane_get(&b->position[1], x, y), plane_get(&b->position[2], x, y));
 }
 
+// A world direction in camera space.
+static inline vec3 build_rotate(const camera *c, vec3 d)
+{
+    const double(*m)[3] = c->world_from_camera.m;
+    return v3(m[0][0] * d.x + m[1][0] * d.y + m[2][0] * d.z, m[0][1] * d.x + m[1][1] * d.y + m[2][1] * d.z,
+              m[0][2] * d.x + m[1][2] * d.y + m[2][2] * d.z);
+}
+
 // Direction with z = 1 (perspective) through the centre of the pixel; orthographic: (0, 0, 1).
 static inline vec3 build_ray(const camera *c, int x, int y)
 {

@@ -8,9 +8,13 @@
 
 static const double pi = 3.14159265358979323846;
 
+// The transpose's product written out: this runs for every pixel of a frame.
 vec3 camera_from_world(const camera *c, vec3 world)
 {
-    return m3_apply(m3_transpose(c->world_from_camera), v3_sub(world, c->origin));
+    const double(*m)[3] = c->world_from_camera.m;
+    vec3 d = v3_sub(world, c->origin);
+    return v3(m[0][0] * d.x + m[1][0] * d.y + m[2][0] * d.z, m[0][1] * d.x + m[1][1] * d.y + m[2][1] * d.z,
+              m[0][2] * d.x + m[1][2] * d.y + m[2][2] * d.z);
 }
 
 bool camera_project(const camera *c, vec3 p, double *x, double *y)
@@ -29,7 +33,8 @@ double camera_point_error(const camera *c, const camera_point *point)
 {
     double x, y;
     if (!camera_project(c, camera_from_world(c, point->world), &x, &y)) return 1e30;
-    double distance = hypot(x - point->x, y - point->y);
+    x -= point->x, y -= point->y;
+    double distance = sqrt(x * x + y * y);
     return distance < 1e30 ? distance : 1e30;
 }
 

@@ -138,7 +138,7 @@ double projection_error(const projection *p, const camera_point *point)
     double h[3];
     for (int r = 0; r < 3; r++) h[r] = p->m[r][0] * q.x + p->m[r][1] * q.y + p->m[r][2] * q.z + p->m[r][3];
     if (!(h[2] > 0.0)) return 1e30;
-    double distance = hypot(h[0] / h[2] - point->x, h[1] / h[2] - point->y);
+    double dx = h[0] / h[2] - point->x, dy = h[1] / h[2] - point->y, distance = sqrt(dx * dx + dy * dy);
     return distance < 1e30 ? distance : 1e30;
 }
 

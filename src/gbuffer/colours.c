@@ -1,4 +1,6 @@
 // The colour layers as finite floats.
+#include <float.h>
+
 #include "base/mem.h"
 #include "base/threads.h"
 #include "gbuffer/build.h"
@@ -16,21 +18,23 @@ typedef struct job {
 
 static float tamed(double v, bool unit)
 {
-    if (isnan(v)) return 0.0f;
-    if (unit) return (float)fmin(fmax(v, 0.0), 1.0);
-    if (v == -INFINITY) return 0.0f;
-    return (float)fmin(fmax(v, -(double)most), (double)most);
+    double low = unit ? 0.0 : -(double)most, high = unit ? 1.0 : (double)most;
+    if (v >= low && v <= high) return (float)v;
+    if (v > high) return (float)high;
+    return v >= -DBL_MAX && !unit ? -most : 0.0f; // NaN and -infinity are 0
 }
 
 static bool convert_row(void *context, size_t row, int worker)
 {
     (void)worker;
     const job *j = context;
-    for (int x = 0; x < j->width; x++)
-        for (int c = 0; c < j->components; c++) {
-            float *to = &j->to[((size_t)row * (size_t)j->width + (size_t)x) * (size_t)j->components + (size_t)c];
-            *to = j->from[c].data ? tamed(plane_get(&j->from[c], x, (int)row), j->unit) : j->fill[c];
-        }
+    const size_t step = (size_t)j->components;
+    for (int c = 0; c < j->components; c++) {
+        const plane from = j->from[c];
+        float *to = j->to + row * (size_t)j->width * step + (size_t)c;
+        for (int x = 0; x < j->width; x++, to += step)
+            *to = from.data ? tamed(plane_get(&from, x, (int)row), j->unit) : j->fill[c];
+    }
     return true;
 }
 

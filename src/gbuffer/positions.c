@@ -34,7 +34,8 @@ static double pixels_off(const build *b, vec3 p, int x, int y)
 {
     double px, py;
     if (!camera_project(&b->g->camera, p, &px, &py)) return INFINITY;
-    return hypot(px - (x + 0.5), py - (y + 0.5));
+    px -= x + 0.5, py -= y + 0.5;
+    return sqrt(px * px + py * py);
 }
 
 // P = (0,0,0) is a place like any other when the depth channel says the surface is there.
