@@ -165,7 +165,7 @@ static pass_settings settings_of(const job *j, const frame_result *r)
     const options *o = j->o;
     const method *m = r->plan.method;
     double radius = radius_of(o, &r->gb), share = o->thickness < 0.0 ? m->thickness : o->thickness;
-    bool beauty = r->resolution.components[ROLE_BEAUTY] > 0;
+    bool beauty = r->resolution.components[ROLE_BEAUTY] > 0, alpha = r->resolution.components[ROLE_ALPHA] > 0;
     return (pass_settings){
         .radius = radius,
         .thickness = share * radius,
