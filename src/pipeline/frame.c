@@ -160,6 +160,9 @@ static mat3 world_from_camera(const job *j, const frame_result *r)
     return r->gb.camera.has_world ? r->gb.camera.world_from_camera : m3_identity();
 }
 
+// composite.comp: 1 the beauty, 2 the environment, 0 nothing.
+static int background_of(bool beauty, bool environment) { return beauty ? 1 : environment ? 2 : 0; }
+
 static pass_settings settings_of(const job *j, const frame_result *r)
 {
     const options *o = j->o;
@@ -180,9 +183,8 @@ static pass_settings settings_of(const job *j, const frame_result *r)
         .visibility_mode = r->plan.visibility_mode,
         .base_albedo = r->resolution.albedo == ALBEDO_BASE,
         .averaged_albedo = convention_named(r->resolution.convention)->normals_averaged,
-        .background = beauty   ? 1
-                      : o->env ? 2
-                               : 0,
+        // With an alpha the picture is premultiplied, and the environment is not part of it.
+        .background = background_of(beauty, o->env && !alpha),
         .relight = r->plan.relight,
         .bounce_in_composite = r->plan.bounce_in_composite,
     };
