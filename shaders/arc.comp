@@ -56,7 +56,7 @@ void main() {
         Line line = line_of(P, V, across, origin), back = line_of(P, V, -across, origin);
         uvec2 blocked = march(right, line, P, N, noise.x, noise.y) | mirrored(march(left, back, P, N, 1.0 - noise.x, 1.0 - noise.y));
 #ifdef PLANES
-        blocked |= behind_planes(right, left, line, back, P, noise.y);
+        blocked |= behind_planes(right, V, across, n, line, back, P, noise.y);
 #endif
         float weight = sqrt(squared) * (cos(n) + n * sin(n));
         open += weight * (1.0 - sector_share(blocked));

@@ -3,12 +3,22 @@
 #include <locale.h>
 #include <signal.h>
 #include <stdio.h>
-#include <stdlib.h>
+#include <unistd.h>
 
 #include "cli/options.h"
+#include "pipeline/batch.h"
 #include "pipeline/frame.h"
 #include "pipeline/preview.h"
 #include "pipeline/report.h"
+
+// The signal that asked us to stop. The first lets a frame that is being written finish; the second ends the process at once.
+static volatile int stop_signal;
+
+static void on_signal(int number)
+{
+    if (stop_signal) _exit(128 + number);
+    stop_signal = number;
+}
 
 static int fail(const error *e)
 {
@@ -32,7 +42,9 @@ static bool run(const options *o, log_t *log, error *e)
     job j;
     frame_result r = {0};
     bool ok = job_open(&j, o, log, e);
-    if (ok) {
+    if (ok && batch_is(o)) {
+        ok = batch_run(&j, &stop_signal, e);
+    } else if (ok) {
         ok = frame_run(&j, o->inputs[0], o->output, &r, e) && (!o->preview || preview_write(&r, o->preview, e)) &&
              (!o->report || report_write(&j, &r, o->output, o->report, e));
         frame_free(&r);
@@ -47,6 +59,8 @@ int main(int argc, char **argv)
     options o;
     setlocale(LC_NUMERIC, "C"); // whatever LC_ALL says
     signal(SIGPIPE, SIG_IGN);
+    signal(SIGINT, on_signal);
+    signal(SIGTERM, on_signal);
     options_defaults(&o);
     if (!options_parse(argc, argv, &o, &e)) return fail(&e);
     if (o.help) {
@@ -62,5 +76,6 @@ int main(int argc, char **argv)
     log_init(&log, o.quiet ? LOG_QUIET : o.verbose ? LOG_INFO : LOG_WARN);
     bool ok = run(&o, &log, &e);
     log_free(&log);
+    if (stop_signal) return 128 + stop_signal;
     return ok ? 0 : fail(&e);
 }

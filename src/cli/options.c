@@ -29,6 +29,7 @@ void options_defaults(options *o)
         .amount = 1,
         .prefix = "",
         .device = -1,
+        .radius_from = INT_MIN,
     };
 }
 

@@ -49,6 +49,10 @@ typedef struct options {
     const char *compression; // NULL = as the input
     bool output_float;
 
+    const char *frames; // --frames; NULL = every existing file of the pattern
+    bool missing_skip, skip_existing, keep_going;
+    int radius_from; // frame that the automatic radius of a sequence is measured on; INT_MIN = the lowest existing
+
     const char *preview, *report;
     int device; // -1 = first usable
     bool list_devices;

@@ -14,6 +14,7 @@ enum {
     SCORED = 512,      // points that score a hypothesis
     TRIALS = 800,      // for 6 points and half of them bad, 800 draws miss with probability 3e-6
     REWEIGHTINGS = 15, // of the linear fit
+    LINEAR = 3000,     // points the linear stage looks at; the refinement uses all
 };
 static const double near_pixels = 2.0;   // a point within this of its place counts as explained while searching
 static const double least_sigma = 0.01;  // pixels: keeps float rounding from being taken for an outlier
@@ -71,15 +72,27 @@ static bool reweight(const problem *k, projection *p)
     return true;
 }
 
-static double score(const problem *k, const projection *p, double limit)
+// Truncated squared error over some of the points; *share: those within the limit.
+static double score(const problem *k, const projection *p, double limit, double *share)
 {
-    size_t stride = k->count / SCORED + 1;
+    size_t n = k->count < SCORED ? k->count : SCORED, within = 0;
     double sum = 0.0;
-    for (size_t i = 0; i < k->count; i += stride) {
+    for (size_t i = 0; i < n; i++) {
         double r = projection_error(p, &k->points[i]);
         sum += fmin(r * r, limit * limit);
+        within += r < limit;
     }
+    *share = (double)within / (double)n;
     return sum;
+}
+
+// Draws after which a set without a bad point has been missed with a probability of one in a million, if `share` is good.
+static int draws_needed(double share, size_t minimal)
+{
+    double clean = pow(share, (double)minimal);
+    if (clean > 0.999) return 1;
+    double draws = log(1e-6) / log1p(-clean);
+    return draws < TRIALS ? (int)draws + 1 : TRIALS;
 }
 
 static bool search(const problem *k, camera_kind kind, double limit, projection *best)
@@ -87,29 +100,36 @@ static bool search(const problem *k, camera_kind kind, double limit, projection 
     const size_t minimal = kind == CAMERA_PERSPECTIVE ? 6 : 4;
     uint64_t random = 1;
     double least = INFINITY;
-    for (int trial = 0; trial < TRIALS; trial++) {
+    int needed = TRIALS;
+    for (int trial = 0; trial < needed; trial++) {
         camera_point picked[6];
         for (size_t i = 0; i < minimal; i++) picked[i] = k->points[solve_random(&random) % k->count];
         projection p;
+        double share;
         if (!projection_fit(kind, picked, NULL, minimal, NULL, &p)) continue;
-        double s = score(k, &p, limit);
-        if (s < least) least = s, *best = p;
+        double s = score(k, &p, limit, &share);
+        if (!(s < least)) continue;
+        least = s, *best = p;
+        // Sets close to one plane or line explain less than clean ones could: four times the draws of the textbook.
+        needed = 4 * draws_needed(share, minimal);
+        needed = needed < TRIALS ? needed : TRIALS;
     }
     return isfinite(least);
 }
 
-// The linear stage. The errors of the result are left in k->errors.
-static bool linear_stage(const problem *k, camera_kind kind, projection *out)
+// The linear stage. searching: draw minimal sets where reweighting explains too few points.
+static bool linear_stage(const problem *all, camera_kind kind, bool searching, projection *out)
 {
+    problem few = *all, *k = &few;
+    if (few.count > LINEAR) few.count = LINEAR;
     bool have = projection_fit(kind, k->points, NULL, k->count, NULL, out) && reweight(k, out);
     double share = have ? share_explained(k) : 0.0;
-    for (int attempt = 0; attempt < 2 && share < 0.65; attempt++) {
+    for (int attempt = 0; searching && attempt < 2 && share < 0.65; attempt++) {
         projection p;
         if (!search(k, kind, attempt == 0 ? near_pixels : 5.0 * near_pixels, &p) || !reweight(k, &p)) continue;
         double found = share_explained(k);
         if (!have || found > share) *out = p, share = found, have = true;
     }
-    if (have) errors_of(k, out);
     return have;
 }
 
@@ -127,11 +147,11 @@ static double choose_inliers(const problem *k)
     return sigma;
 }
 
-static solution solve(const problem *k, camera_kind kind)
+static solution solve(const problem *k, camera_kind kind, bool searching)
 {
     solution s = {.median = INFINITY, .spread = INFINITY};
     projection p;
-    if (!linear_stage(k, kind, &p) || !projection_to_camera(&p, &s.camera)) return s;
+    if (!linear_stage(k, kind, searching, &p) || !projection_to_camera(&p, &s.camera)) return s;
     unsigned all = FREE_FX | FREE_FY | FREE_CENTRE | FREE_POSE;
     double sigma = least_sigma;
     for (int round = 0; round < 3; round++) {
@@ -147,31 +167,31 @@ static solution solve(const problem *k, camera_kind kind)
     return s;
 }
 
-// Root mean square of the nearest 80 % of both cameras' errors on the same points: those explained best by `reference`.
-static double compare_rms(const problem *k, const camera *reference, const camera *c)
+// Root mean square errors of both cameras on the same points: those that the better of the two explains well. Choosing them by
+// one camera alone would let a nonsensical one choose the outliers.
+static void compare(const problem *k, const camera *a, const camera *b, double *rms_a, double *rms_b)
 {
-    camera_errors(k, reference);
-    double limit;
-    for (size_t i = 0; i < k->count; i++) k->weights[i] = k->errors[i];
-    limit = solve_select(k->weights, k->count, k->count * 4 / 5);
+    for (size_t i = 0; i < k->count; i++) {
+        k->errors[i] = fmin(camera_point_error(a, &k->points[i]), camera_point_error(b, &k->points[i]));
+        k->weights[i] = k->errors[i];
+    }
+    double limit = solve_select(k->weights, k->count, k->count * 4 / 5);
     limit = fmin(limit, 10.0 * fmax(median_error(k, k->weights), least_sigma));
-    double sum = 0.0;
-    size_t n = 0;
+    double sum_a = 0.0, sum_b = 0.0, n = 0.0;
     for (size_t i = 0; i < k->count; i++) {
         if (k->errors[i] > limit) continue;
-        double r = camera_point_error(c, &k->points[i]);
-        sum += r * r;
-        n++;
+        double ea = camera_point_error(a, &k->points[i]), eb = camera_point_error(b, &k->points[i]);
+        sum_a += ea * ea, sum_b += eb * eb, n += 1.0;
     }
-    return n ? sqrt(sum / (double)n) : INFINITY;
+    *rms_a = sqrt(sum_a / n), *rms_b = sqrt(sum_b / n); // the median point is always among them
 }
 
 static bool choose(const problem *k, const solution *perspective, const solution *orthographic, const solution **out)
 {
     bool p = perspective->good, o = orthographic->good && orthographic->spread < worst_spread;
     if (p && o) {
-        double rp = compare_rms(k, &perspective->camera, &perspective->camera);
-        double ro = compare_rms(k, &perspective->camera, &orthographic->camera);
+        double rp, ro;
+        compare(k, &perspective->camera, &orthographic->camera, &rp, &ro);
         if (ro <= tie * rp + 1e-3)
             p = false;
         else
@@ -212,6 +232,13 @@ static bool prepare(const camera_point *points, size_t count, problem *k, error 
     if (!k->points || !k->weights || !k->errors) return false;
     for (size_t i = 0; i < count; i++)
         if (v3_finite(points[i].world) && isfinite(points[i].x + points[i].y)) k->points[k->count++] = points[i];
+    // In random order, so that the first n are a fair sample.
+    uint64_t random = 11;
+    for (size_t i = k->count; i > 1; i--) {
+        size_t j = (size_t)(solve_random(&random) % i);
+        camera_point swap = k->points[i - 1];
+        k->points[i - 1] = k->points[j], k->points[j] = swap;
+    }
     double *axis[3] = {&k->centre.x, &k->centre.y, &k->centre.z};
     for (int a = 0; a < 3; a++) {
         for (size_t i = 0; i < k->count; i++) {
@@ -249,7 +276,10 @@ bool camera_fit(const camera_point *points, size_t count, camera *out, error *e)
                 LEAST_POINTS, remedy);
         goto out;
     }
-    solution perspective = solve(&k, CAMERA_PERSPECTIVE), orthographic = solve(&k, CAMERA_ORTHOGRAPHIC);
+    // Parallel rays leave a perspective camera's focal length open: where that is settled there is nothing to search for.
+    solution perspective = solve(&k, CAMERA_PERSPECTIVE, true);
+    bool settled = perspective.good && perspective.spread < worst_spread && perspective.median < near_pixels;
+    solution orthographic = solve(&k, CAMERA_ORTHOGRAPHIC, !settled);
     const solution *best;
     if (!choose(&k, &perspective, &orthographic, &best)) {
         err_set(e, ERR_INPUT, NULL, NULL,

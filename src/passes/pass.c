@@ -41,11 +41,36 @@ static void fill_block(frame_block *b, const gbuffer *gb, const environment *env
         for (int c = 0; c < 3; c++) b->sh[i][c] = (float)env->sh[i][c];
 }
 
-static bool upload(pass_context *c, gpu_image *image, GLenum format, const float *pixels, error *e)
+static bool upload(pass_context *c, const char *name, gpu_image *image, GLenum format, const float *pixels, error *e)
 {
     if (!pixels) return true;
     if (!gpu_image_make(c->g, image, format, c->width, c->height, 1, e)) return false;
     gpu_image_upload(image, 0, pixels);
+    size_t components = format == GL_R32F ? 1 : format == GL_RG32F ? 2 : 4;
+    size_t bytes = (size_t)c->width * (size_t)c->height * components * sizeof *pixels;
+    c->uploads[c->upload_count++] = (pass_upload){name, bytes};
+    return true;
+}
+
+static bool upload_all(pass_context *c, const gbuffer *gb, error *e)
+{
+    const struct {
+        const char *name;
+        gpu_image *image;
+        GLenum format;
+        const float *pixels;
+    } list[] = {
+        {"depth", &c->depth, GL_R32F, gb->depth},
+        {"normal", &c->normal, GL_RGBA32F, gb->normal},
+        {"albedo", &c->albedo, GL_RGBA32F, gb->albedo},
+        {"beauty", &c->beauty, GL_RGBA32F, gb->beauty},
+        {"material", &c->material, GL_RG32F, gb->material},
+        {"emission", &c->emission, GL_RGBA32F, gb->emission},
+        {"diffuse direct", &c->diffuse_direct, GL_RGBA32F, gb->diffuse_direct},
+        {"coverage", &c->coverage, GL_R32F, gb->coverage},
+    };
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++)
+        if (!upload(c, list[i].name, list[i].image, list[i].format, list[i].pixels, e)) return false;
     return true;
 }
 
@@ -59,14 +84,10 @@ bool pass_upload_environment(gpu *g, const environment *env, gpu_image *out, err
 bool pass_begin(pass_context *c, gpu *g, const gbuffer *gb, const environment *env, const pass_settings *set, bool timing,
                 log_t *log, error *e)
 {
-    *c = (pass_context){.g = g, .log = log, .timing = timing, .width = gb->width, .height = gb->height, .set = *set};
+    *c = (pass_context){.g = g, .log = log, .timing = timing, .width = gb->width, .height = gb->height, .set = *set, .gb = gb};
     double wall = now(CLOCK_MONOTONIC), cpu = now(CLOCK_PROCESS_CPUTIME_ID);
-    bool ok =
-        upload(c, &c->depth, GL_R32F, gb->depth, e) && upload(c, &c->normal, GL_RGBA32F, gb->normal, e) &&
-        upload(c, &c->albedo, GL_RGBA32F, gb->albedo, e) && upload(c, &c->beauty, GL_RGBA32F, gb->beauty, e) &&
-        upload(c, &c->material, GL_RG32F, gb->material, e) && upload(c, &c->emission, GL_RGBA32F, gb->emission, e) &&
-        upload(c, &c->diffuse_direct, GL_RGBA32F, gb->diffuse_direct, e) && upload(c, &c->coverage, GL_R32F, gb->coverage, e) &&
-        gpu_tiles_make(&c->tiles, c->width, c->height, GPU_TILE, gb->depth, gb->coverage, e) && gpu_finish(g, "the upload", e);
+    bool ok = upload_all(c, gb, e) && gpu_tiles_make(&c->tiles, c->width, c->height, GPU_TILE, gb->depth, gb->coverage, e) &&
+              gpu_finish(g, "the upload", e);
     if (!ok) {
         pass_end(c);
         return false;
@@ -76,7 +97,7 @@ bool pass_begin(pass_context *c, gpu *g, const gbuffer *gb, const environment *e
     c->frame_uniforms = gpu_uniforms_make(sizeof block);
     gpu_uniforms_set(c->frame_uniforms, 0, &block, sizeof block);
     c->params_uniforms = gpu_uniforms_make(256);
-    c->timings[c->timing_count++] = (pass_timing){"upload", now(CLOCK_MONOTONIC) - wall, now(CLOCK_PROCESS_CPUTIME_ID) - cpu};
+    c->timings[c->timing_count++] = (pass_timing){"upload", now(CLOCK_MONOTONIC) - wall, now(CLOCK_PROCESS_CPUTIME_ID) - cpu, 0};
     return true;
 }
 
@@ -89,7 +110,8 @@ void pass_end(pass_context *c)
     gpu_uniforms_free(c->frame_uniforms);
     gpu_uniforms_free(c->params_uniforms);
     gpu_tiles_free(&c->tiles);
-    c->frame_uniforms = c->params_uniforms = 0;
+    gpu_uniforms_free(c->plane_uniforms);
+    c->frame_uniforms = c->params_uniforms = c->plane_uniforms = 0;
 }
 
 bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, error *e)
@@ -118,6 +140,7 @@ bool pass_run(pass_context *c, const char *name, const char *defines, const void
     gpu_dispatch_tiles(&c->tiles, everywhere);
     if (c->timing && !gpu_finish(c->g, name, e)) return false;
     if (c->timing_count < PASS_MAX_TIMINGS)
-        c->timings[c->timing_count++] = (pass_timing){name, now(CLOCK_MONOTONIC) - wall, now(CLOCK_PROCESS_CPUTIME_ID) - cpu};
+        c->timings[c->timing_count++] = (pass_timing){name, now(CLOCK_MONOTONIC) - wall, now(CLOCK_PROCESS_CPUTIME_ID) - cpu,
+                                                      everywhere ? c->tiles.columns * c->tiles.rows : c->tiles.occupied_count};
     return true;
 }

@@ -10,18 +10,26 @@
 #include "gbuffer/gbuffer.h"
 #include "gpu/gpu.h"
 #include "light/environment.h"
+#include "passes/planes.h"
 
-enum { PASS_MAX_TIMINGS = 48 };
+enum { PASS_MAX_TIMINGS = 48, PASS_MAX_UPLOADS = 12 };
 
 typedef struct pass_timing {
     const char *name;
     double wall_ms, cpu_ms;
+    int tiles; // dispatched; 0 for what is no pass
 } pass_timing;
+
+// One picture that was sent to the GPU for a frame.
+typedef struct pass_upload {
+    const char *name; // "depth", "normal", "albedo", ...
+    size_t bytes;
+} pass_upload;
 
 // Settings of one frame, all resolved: no "auto" is left.
 typedef struct pass_settings {
-    double radius;    // scene units
-    double thickness; // scene units; INFINITY allowed
+    double radius;        // scene units
+    double thickness;     // scene units; INFINITY allowed
     bool thickness_fixed; // asked for by the user: no method may find a better one
     int samples;
     int blur; // pixels, 0 none
@@ -30,6 +38,7 @@ typedef struct pass_settings {
     double bounce_strength;
     mat3 world_from_camera; // to the world that the environment is fixed to
     int seed;
+    bool planes; // let large planes stand in for what the camera does not see
     double amount;
     bool visibility_mode;
     bool base_albedo;     // albedo is a base colour: metals have one
@@ -53,10 +62,15 @@ typedef struct pass_context {
     // Layers; id 0 until their pass has run.
     gpu_image occlusion, visibility, radiance, indirect, specular, diffuse_share, composite, diffuse;
 
-    GLuint frame_uniforms, params_uniforms;
+    const gbuffer *gb; // borrowed: for what is found on the CPU
+    plane_set planes;  // found by the pass that uses them
+
+    GLuint frame_uniforms, params_uniforms, plane_uniforms;
     gpu_tiles tiles;
     pass_timing timings[PASS_MAX_TIMINGS];
     int timing_count;
+    pass_upload uploads[PASS_MAX_UPLOADS];
+    int upload_count;
 } pass_context;
 
 // Uploads what `need` (gbuffer_need bits) says and the plan wants. env may be NULL (no light wanted).

@@ -70,12 +70,24 @@ static double milliseconds(clockid_t clock)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
+// Coverage matters to the composite, and where a pixel has a share of a surface but none recorded, which the edges pass fills.
+static bool needs_coverage(const frame_result *r)
+{
+    size_t pixels = (size_t)r->gb.width * (size_t)r->gb.height;
+    if (!r->gb.coverage || r->plan.composite) return r->gb.coverage != NULL;
+    for (size_t i = 0; i < pixels; i++)
+        if (r->gb.coverage[i] > 0.0f && r->gb.depth[i] == 0.0f) return true;
+    return false;
+}
+
 bool filter_frame(job *j, frame_result *r, error *e)
 {
     pass_context c;
     double wall = milliseconds(CLOCK_MONOTONIC), cpu = milliseconds(CLOCK_PROCESS_CPUTIME_ID);
     const environment *env = j->env_loaded ? &j->env : NULL;
-    if (!pass_begin(&c, &j->g, &r->gb, env, &r->set, j->o->report != NULL, j->log, e)) return false;
+    gbuffer gb = r->gb; // borrows its arrays
+    if (!needs_coverage(r)) gb.coverage = NULL;
+    if (!pass_begin(&c, &j->g, &gb, env, &r->set, j->o->report != NULL, j->log, e)) return false;
     c.environment = j->env_image;
     c.want_radiance = r->plan.want_radiance;
     c.want_visibility = r->plan.want_visibility && r->plan.method->fills_radiance;
@@ -88,6 +100,9 @@ bool filter_frame(job *j, frame_result *r, error *e)
     r->cpu_ms[STAGE_READ_BACK] = milliseconds(CLOCK_PROCESS_CPUTIME_ID) - cpu - r->cpu_ms[STAGE_PASSES];
     memcpy(r->timings, c.timings, sizeof r->timings);
     r->timing_count = c.timing_count;
+    memcpy(r->uploads, c.uploads, sizeof r->uploads);
+    r->upload_count = c.upload_count;
+    r->tile_size = c.tiles.size, r->tiles = c.tiles.columns * c.tiles.rows, r->tiles_occupied = c.tiles.occupied_count;
     pass_end(&c);
     return ok;
 }

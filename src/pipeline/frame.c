@@ -66,8 +66,9 @@ static void want_channels(const job *j, exr_file *file, const resolution *r)
         }
 }
 
-static bool read_frame(job *j, const char *input, frame_result *r, error *e)
+bool frame_read(const job *j, const char *input, frame_result *r, error *e)
 {
+    *r = (frame_result){0};
     stopwatch t = read_clocks();
     resolve_options ro = resolve_options_of(j->o);
     if (!exr_file_open(input, &r->file, e) || !resolve_channels(r->file, &ro, &r->resolution, j->log, e) ||
@@ -122,10 +123,11 @@ static bool check_world(const job *j, const frame_result *r, error *e)
 
 static double median_depth(const gbuffer *gb);
 
-static double radius_of(const options *o, const gbuffer *gb)
+static double radius_of(const job *j, const gbuffer *gb)
 {
+    const options *o = j->o;
     if (o->radius_unit == RADIUS_WORLD) return o->radius;
-    if (o->radius_unit == RADIUS_AUTO) return gbuffer_auto_radius(gb);
+    if (o->radius_unit == RADIUS_AUTO) return j->shot_radius > 0.0 ? j->shot_radius : gbuffer_auto_radius(gb);
     // Pixels are turned into one world distance at the frame's median depth, so that the radius is the same on all surfaces.
     double per_unit = gb->camera.fx;
     return gb->camera.kind == CAMERA_ORTHOGRAPHIC ? o->radius / per_unit : o->radius * median_depth(gb) / per_unit;
@@ -161,13 +163,13 @@ static mat3 world_from_camera(const job *j, const frame_result *r)
 }
 
 // composite.comp: 1 the beauty, 2 the environment, 0 nothing.
-static int background_of(bool beauty, bool environment) { return beauty ? 1 : environment ? 2 : 0; }
+static int background_of(bool beauty, bool sky) { return beauty ? 1 : sky ? 2 : 0; }
 
 static pass_settings settings_of(const job *j, const frame_result *r)
 {
     const options *o = j->o;
     const method *m = r->plan.method;
-    double radius = radius_of(o, &r->gb), share = o->thickness < 0.0 ? m->thickness : o->thickness;
+    double radius = radius_of(j, &r->gb), share = o->thickness < 0.0 ? m->thickness : o->thickness;
     bool beauty = r->resolution.components[ROLE_BEAUTY] > 0, alpha = r->resolution.components[ROLE_ALPHA] > 0;
     return (pass_settings){
         .radius = radius,
@@ -190,17 +192,16 @@ static pass_settings settings_of(const job *j, const frame_result *r)
     };
 }
 
-bool frame_run(job *j, const char *input, const char *output, frame_result *r, error *e)
+bool frame_filter(job *j, frame_result *r, error *e)
 {
-    *r = (frame_result){0};
-    if (exr_same_file(input, output))
-        return err_set(e, ERR_USAGE, output, NULL, "the output is the input file; name another output, so that nothing is lost");
-    if (!read_frame(j, input, r, e)) return false;
-    if (r->gb.valid == 0) log_warn(j->log, "empty", "%s: no pixel has a surface; the layers are neutral", input);
+    if (r->gb.valid == 0) log_warn(j->log, "empty", "%s: no pixel has a surface; the layers are neutral", r->file->path);
     r->set = settings_of(j, r);
     describe(j, r);
-    if (!check_world(j, r, e) || !prepare_light(j, r, e)) return false;
-    if (!filter_frame(j, r, e)) return false;
+    return check_world(j, r, e) && prepare_light(j, r, e) && filter_frame(j, r, e);
+}
+
+bool frame_write(const job *j, frame_result *r, const char *output, error *e)
+{
     stopwatch t = read_clocks();
     if (!output_write(j, r, output, e)) return false;
     lap(r, STAGE_WRITE, &t);
@@ -208,6 +209,23 @@ bool frame_run(job *j, const char *input, const char *output, frame_result *r, e
         log_warn(j->log, "clamped", "%zu samples were beyond what half can hold and were clamped; --float keeps them",
                  r->clamped);
     return true;
+}
+
+bool frame_run(job *j, const char *input, const char *output, frame_result *r, error *e)
+{
+    *r = (frame_result){0};
+    if (exr_same_file(input, output))
+        return err_set(e, ERR_USAGE, output, NULL, "the output is the input file; name another output, so that nothing is lost");
+    return frame_read(j, input, r, e) && frame_filter(j, r, e) && frame_write(j, r, output, e);
+}
+
+bool frame_measure_radius(const job *j, const char *input, double *radius, error *e)
+{
+    frame_result r;
+    bool ok = frame_read(j, input, &r, e);
+    if (ok) *radius = gbuffer_auto_radius(&r.gb);
+    frame_free(&r);
+    return ok;
 }
 
 void frame_free(frame_result *r)

@@ -19,6 +19,7 @@ typedef struct job {
     bool env_loaded; // the environment needs the first frame's renderer for its default up axis
     environment env;
     gpu_image env_image;
+    double shot_radius; // automatic radius of the whole sequence; 0: each frame has its own
 } job;
 
 typedef enum stage { STAGE_READ, STAGE_RESOLVE, STAGE_PASSES, STAGE_READ_BACK, STAGE_WRITE, STAGE_COUNT } stage;
@@ -33,15 +34,28 @@ typedef struct frame_result {
     double wall_ms[STAGE_COUNT], cpu_ms[STAGE_COUNT];
     pass_timing timings[PASS_MAX_TIMINGS];
     int timing_count;
-    size_t clamped;             // samples of ours that a half could not hold
-    float *layers[LAYER_COUNT]; // width * height * channels, interleaved; NULL where not made
+    pass_upload uploads[PASS_MAX_UPLOADS];
+    int upload_count;
+    int tile_size, tiles, tiles_occupied; // tiles without a surface are not dispatched (but for the composite of a background)
+    size_t clamped;                       // samples of ours that a half could not hold
+    float *layers[LAYER_COUNT];           // width * height * channels, interleaved; NULL where not made
     bool second_part;
 } frame_result;
 
 bool job_open(job *j, const options *o, log_t *log, error *e);
 void job_close(job *j);
 
+// The three stages of a frame, to be called in this order on one result; after a failure only frame_free. Reading and writing may
+// run on other threads than filtering, which belongs to the context's thread; of one job no stage runs twice at a time.
+bool frame_read(const job *j, const char *input, frame_result *result, error *e); // starts by zeroing the result
+bool frame_filter(job *j, frame_result *result, error *e);
+bool frame_write(const job *j, frame_result *result, const char *output, error *e);
+
+// All three.
 bool frame_run(job *j, const char *input, const char *output, frame_result *result, error *e);
 void frame_free(frame_result *result);
+
+// The automatic radius of one frame, for a sequence that must have the same radius everywhere.
+bool frame_measure_radius(const job *j, const char *input, double *radius, error *e);
 
 #endif

@@ -236,7 +236,7 @@ static bool make_parts(assembly *a, const job *j, frame_result *r, error *e)
     return true;
 }
 
-bool output_write(job *j, frame_result *r, const char *path, error *e)
+bool output_write(const job *j, frame_result *r, const char *path, error *e)
 {
     assembly *a = mem_zero(1, sizeof *a, e);
     bool ok = a && add_layers(a, j, r, e);

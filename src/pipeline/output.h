@@ -11,6 +11,6 @@ bool output_check_names(const options *o, const exr_file *file, const plan *p, e
 
 // Writes the file. A single-part input stays single-part. Parts of a multi-part input are merged into one where windows and names
 // allow; otherwise they are kept as they are and our layers go into a part of their own, named "ssdo".
-bool output_write(job *j, frame_result *r, const char *path, error *e);
+bool output_write(const job *j, frame_result *r, const char *path, error *e);
 
 #endif

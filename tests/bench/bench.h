@@ -57,7 +57,8 @@ typedef struct bench_row {
     int samples, blur;      // blur in pixels, 0 none
     double thickness;       // share of the radius; < 0 as the method's row has it
     double scale, contrast; // 1
-    bool standard;          // the method's own defaults: a row of the short table
+    bool no_planes;
+    bool standard; // the method's own defaults: a row of the short table
 } bench_row;
 
 // Share and contrast of Alchemy with the lowest root mean square over the scenes, by a fixed grid.

@@ -7,7 +7,7 @@
 #include "bench.h"
 
 // Points of the references' quadratures: enough that what is left is well below the error of 1024 samples.
-enum { ELEVATIONS = 32, AZIMUTHS = 48, DISTANCES = 16, DISC = 96, SLICES = 64 };
+enum { ELEVATIONS = 24, AZIMUTHS = 36, DISTANCES = 16, DISC = 72, SLICES = 64 };
 
 typedef enum reference_kind { REF_NONE, REF_SSDO, REF_ALCHEMY, REF_HORIZON, REF_BITMASK } reference_kind;
 
@@ -19,12 +19,13 @@ typedef struct reference_job {
     double *out;
 } reference_job;
 
-static reference_kind kind_of(const bench_row *row, double thickness)
+static reference_kind kind_of(const bench_row *row)
 {
     if (row->kind != ROW_METHOD) return REF_NONE;
     if (strcmp(row->m->name, "ssdo") == 0) return REF_SSDO;
     if (strcmp(row->m->name, "alchemy") == 0) return REF_ALCHEMY;
-    if (strcmp(row->m->name, "gtao") == 0) return isinf(thickness) ? REF_HORIZON : REF_BITMASK;
+    if (strcmp(row->m->name, "gtao") == 0) return REF_HORIZON;
+    if (strcmp(row->m->name, "bitmask") == 0) return REF_BITMASK;
     return REF_NONE;
 }
 
@@ -64,7 +65,7 @@ double *bench_reference(const bench_scene *b, const bench_row *row, const char *
 {
     if (row->kind != ROW_METHOD) return NULL;
     pass_settings set = bench_settings(row, b);
-    reference_job j = {b, row, kind_of(row, set.thickness), set.radius, set.thickness, NULL};
+    reference_job j = {b, row, kind_of(row), set.radius, set.thickness, NULL};
     if (j.kind == REF_NONE) return NULL;
     if (j.kind == REF_ALCHEMY || j.kind == REF_HORIZON) j.thickness = INFINITY; // they have none
     size_t size = (size_t)b->pixel_count * sizeof *j.out;

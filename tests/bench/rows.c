@@ -11,10 +11,11 @@ enum { BUDGETS = sizeof budgets / sizeof *budgets };
 // Rows besides a method's own: the same shader under another assumption.
 static const struct {
     const char *method, *suffix;
-    double thickness;
+    double thickness; // share of the radius; < 0 the method's own
+    bool no_planes;
 } variants[] = {
-    {"ssdo", ", no thickness", INFINITY},
-    {"gtao", ", thickness 0.3 R", 0.3},
+    {"ssdo", ", no thickness", INFINITY, false},
+    {"arc", ", no planes", -1.0, true},
 };
 
 static bench_row row_of(const method *m, const char *suffix, int samples, int blur)
@@ -54,13 +55,14 @@ static int method_rows(const method *m, bench_row *rows)
     if (m->blur > 0) rows[n++] = row_of(m, "", m->samples * 4, m->blur);
     for (size_t v = 0; v < sizeof variants / sizeof *variants; v++) {
         if (strcmp(variants[v].method, m->name) != 0) continue;
-        for (int i = 2; i < BUDGETS; i += 2) {
-            rows[n] = row_of(m, variants[v].suffix, budgets[i], 0);
-            rows[n++].thickness = variants[v].thickness;
+        for (int i = 2; i <= BUDGETS; i += 2) {
+            bool own = i == BUDGETS; // the last one: the method's defaults
+            bench_row *r = &rows[n++];
+            *r = row_of(m, variants[v].suffix, own ? m->samples : budgets[i], own ? m->blur : 0);
+            r->standard = own;
+            r->thickness = variants[v].thickness;
+            r->no_planes = variants[v].no_planes;
         }
-        rows[n] = row_of(m, variants[v].suffix, m->samples, m->blur);
-        rows[n].standard = true;
-        rows[n++].thickness = variants[v].thickness;
     }
     return n;
 }

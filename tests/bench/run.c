@@ -11,6 +11,7 @@ pass_settings bench_settings(const bench_row *row, const bench_scene *b)
     set.thickness = (row->thickness < 0.0 ? row->m->thickness : row->thickness) * b->radius;
     set.samples = row->samples;
     set.blur = row->blur;
+    set.planes = !row->no_planes;
     set.scale = row->scale;
     set.contrast = row->contrast;
     return set;
@@ -33,8 +34,10 @@ bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned laye
     bool ok = rig_run(r, &b->gb, row->m, &set, layers, out, e);
     r->job.env_loaded = false;
     r->job.env_image = (gpu_image){0};
-    for (int i = 0; ok && t && i < out->timing_count; i++)
-        if (strcmp(out->timings[i].name, "upload") != 0) t->cpu += out->timings[i].cpu_ms, t->wall += out->timings[i].wall_ms;
+    if (!ok || !t) return ok;
+    *t = (bench_time){out->cpu_ms[STAGE_PASSES], out->wall_ms[STAGE_PASSES]};
+    for (int i = 0; i < out->timing_count; i++)
+        if (strcmp(out->timings[i].name, "upload") == 0) t->cpu -= out->timings[i].cpu_ms, t->wall -= out->timings[i].wall_ms;
     return ok;
 }
 

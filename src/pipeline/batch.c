@@ -1,0 +1,268 @@
+#include "pipeline/batch.h"
+
+#include <limits.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+#include "cli/frames.h"
+#include "exr/write.h"
+#include "pipeline/preview.h"
+#include "pipeline/report.h"
+#include "pipeline/resume.h"
+
+enum { PATH = 4096 };
+
+typedef enum state { EMPTY, WAS_READ, FILTERED } state;
+
+// A frame in flight. It belongs to the thread whose turn its state says it is.
+typedef struct slot {
+    state state;
+    int frame;
+    bool skipped; // nothing to do, by --missing skip or --skip-existing
+    const char *why;
+    char input[PATH], output[PATH];
+    frame_result result;
+    error error;
+    struct timespec started;
+} slot;
+
+typedef struct batch {
+    job *j;
+    const volatile int *stop;
+    frame_list frames;
+    slot slots[BATCH_IN_FLIGHT];
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    bool give_up; // a frame failed, and nobody asked to keep going
+    int done, failed, skipped;
+    char failures[512]; // their numbers
+} batch;
+
+bool batch_is(const options *o) { return o->frames || (o->input_count > 0 && pattern_is(o->inputs[0])); }
+
+static bool stopping(const batch *b) { return (b->stop && *b->stop) || b->give_up; }
+
+// Waits for a slot's turn.
+static slot *take(batch *b, int index, state wanted)
+{
+    slot *s = &b->slots[index % BATCH_IN_FLIGHT];
+    pthread_mutex_lock(&b->lock);
+    while (s->state != wanted) pthread_cond_wait(&b->changed, &b->lock);
+    pthread_mutex_unlock(&b->lock);
+    return s;
+}
+
+static void pass_on(batch *b, slot *s, state next)
+{
+    pthread_mutex_lock(&b->lock);
+    s->state = next;
+    pthread_cond_broadcast(&b->changed);
+    pthread_mutex_unlock(&b->lock);
+}
+
+static bool locked_stopping(batch *b)
+{
+    pthread_mutex_lock(&b->lock);
+    bool s = stopping(b);
+    pthread_mutex_unlock(&b->lock);
+    return s;
+}
+
+static void skip(slot *s, const char *why)
+{
+    s->skipped = true;
+    s->why = why;
+}
+
+static void read_slot(batch *b, slot *s, int frame)
+{
+    const options *o = b->j->o;
+    s->frame = frame;
+    s->skipped = false;
+    s->error = (error){0};
+    s->result = (frame_result){0};
+    clock_gettime(CLOCK_MONOTONIC, &s->started);
+    if (!pattern_path(o->inputs[0], frame, s->input, sizeof s->input) ||
+        !pattern_path(o->output, frame, s->output, sizeof s->output)) {
+        err_set(&s->error, ERR_USAGE, NULL, NULL, "the path of frame %d is too long", frame);
+        return;
+    }
+    if (o->missing_skip && access(s->input, F_OK) != 0) {
+        skip(s, "the input is missing");
+    } else if (exr_same_file(s->input, s->output)) {
+        err_set(&s->error, ERR_USAGE, s->output, NULL,
+                "the output is the input file; name another output, so that nothing is lost");
+    } else if (o->skip_existing && resume_is_done(b->j, s->output)) {
+        skip(s, "already done");
+    } else {
+        frame_read(b->j, s->input, &s->result, &s->error);
+    }
+}
+
+static void read_one(batch *b, int i)
+{
+    slot *s = take(b, i, EMPTY);
+    if (!locked_stopping(b))
+        read_slot(b, s, b->frames.frames[i]);
+    else
+        skip(s, NULL);
+    pass_on(b, s, WAS_READ);
+}
+
+static void *reader(void *arg)
+{
+    batch *b = arg;
+    for (int i = 0; i < b->frames.count; i++) read_one(b, i);
+    return NULL;
+}
+
+static void note_failure(batch *b, const slot *s)
+{
+    char text[1600];
+    size_t used = strlen(b->failures);
+    err_format(&s->error, text, sizeof text);
+    fprintf(stderr, "ssdo-filter: frame %d: %s\n", s->frame, text);
+    snprintf(b->failures + used, sizeof b->failures - used, "%s%d", b->failed ? ", " : "", s->frame);
+    pthread_mutex_lock(&b->lock);
+    b->failed++;
+    if (!b->j->o->keep_going) b->give_up = true;
+    pthread_mutex_unlock(&b->lock);
+}
+
+static void summary(const batch *b, const slot *s, int index)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    double seconds = (double)(t.tv_sec - s->started.tv_sec) + 1e-9 * (double)(t.tv_nsec - s->started.tv_nsec);
+    if (b->j->log->level == LOG_QUIET) return;
+    if (s->skipped)
+        printf("frame %d (%d of %d): skipped, %s\n", s->frame, index + 1, b->frames.count, s->why);
+    else
+        printf("frame %d (%d of %d): %s, %.2f s\n", s->frame, index + 1, b->frames.count, s->output, seconds);
+    fflush(stdout);
+}
+
+static bool write_extras(const batch *b, const slot *s, error *e)
+{
+    const options *o = b->j->o;
+    char path[PATH];
+    if (o->preview && (!pattern_path(o->preview, s->frame, path, sizeof path) || !preview_write(&s->result, path, e)))
+        return false;
+    return !o->report ||
+           (pattern_path(o->report, s->frame, path, sizeof path) && report_write(b->j, &s->result, s->output, path, e));
+}
+
+static void write_slot(batch *b, slot *s, int index)
+{
+    if (s->skipped && !s->why) return; // dropped by a stop
+    if (!s->skipped && s->error.code == ERR_NONE && frame_write(b->j, &s->result, s->output, &s->error))
+        write_extras(b, s, &s->error);
+    if (s->error.code != ERR_NONE) {
+        note_failure(b, s);
+    } else {
+        summary(b, s, index);
+        if (s->skipped)
+            b->skipped++;
+        else
+            b->done++;
+    }
+    frame_free(&s->result);
+}
+
+static void write_one(batch *b, int i)
+{
+    slot *s = take(b, i, FILTERED);
+    write_slot(b, s, i);
+    pass_on(b, s, EMPTY);
+}
+
+static void *writer(void *arg)
+{
+    batch *b = arg;
+    for (int i = 0; i < b->frames.count; i++) write_one(b, i);
+    return NULL;
+}
+
+// The GL thread's share.
+static void filter_all(batch *b, bool read_here, bool write_here)
+{
+    for (int i = 0; i < b->frames.count; i++) {
+        if (read_here) read_one(b, i);
+        slot *s = take(b, i, WAS_READ);
+        if (!s->skipped && s->error.code == ERR_NONE) {
+            if (locked_stopping(b)) {
+                frame_free(&s->result);
+                skip(s, NULL);
+            } else {
+                frame_filter(b->j, &s->result, &s->error);
+            }
+        }
+        pass_on(b, s, FILTERED);
+        if (write_here) write_one(b, i);
+    }
+}
+
+static bool list_frames(const options *o, frame_list *out, error *e)
+{
+    if (o->input_count > 0 && !pattern_is(o->inputs[0]))
+        return err_set(e, ERR_USAGE, o->inputs[0], NULL,
+                       "--frames needs a place for the frame in the input's name: ####, %%04d or $F4");
+    if (!pattern_is(o->output))
+        return err_set(e, ERR_USAGE, o->output, NULL,
+                       "a sequence needs a place for the frame in the output's name: ####, %%04d or $F4");
+    if (o->frames) return frames_parse(o->frames, out, e);
+    if (!pattern_scan(o->inputs[0], out, e)) return false;
+    if (out->count == 0) return err_set(e, ERR_INPUT, o->inputs[0], NULL, "no file fits this pattern");
+    return true;
+}
+
+// The same automatic radius for every frame and every farm task: from the lowest-numbered existing file, whatever --frames says.
+static bool fix_radius(job *j, error *e)
+{
+    frame_list existing = {0};
+    char path[PATH];
+    if (j->o->radius_unit != RADIUS_AUTO) return true;
+    int frame = j->o->radius_from;
+    if (frame == INT_MIN) {
+        if (!pattern_scan(j->o->inputs[0], &existing, e)) return false;
+        if (existing.count == 0) return err_set(e, ERR_INPUT, j->o->inputs[0], NULL, "no file fits this pattern");
+        frame = existing.frames[0];
+        frames_free(&existing);
+    }
+    if (!pattern_path(j->o->inputs[0], frame, path, sizeof path) || !frame_measure_radius(j, path, &j->shot_radius, e))
+        return false;
+    log_info(j->log, "radius: %g scene units for the whole sequence, from %s", j->shot_radius, path);
+    return true;
+}
+
+bool batch_run(job *j, const volatile int *stop, error *e)
+{
+    batch *b = mem_zero(1, sizeof *b, e);
+    pthread_t threads[2];
+    if (!b) return false;
+    b->j = j;
+    b->stop = stop;
+    pthread_mutex_init(&b->lock, NULL);
+    pthread_cond_init(&b->changed, NULL);
+    bool ok = list_frames(j->o, &b->frames, e) && fix_radius(j, e);
+    bool reading = ok && pthread_create(&threads[0], NULL, reader, b) == 0;
+    bool writing = reading && pthread_create(&threads[1], NULL, writer, b) == 0;
+    if (ok) {
+        // Without a thread of their own, reading or writing are done here, a frame at a time.
+        filter_all(b, !reading, !writing);
+        if (reading) pthread_join(threads[0], NULL);
+        if (writing) pthread_join(threads[1], NULL);
+        if (b->failed)
+            ok = err_set(e, ERR_FRAMES, NULL, NULL, "%d of %d frames failed: %s", b->failed, b->frames.count, b->failures);
+    }
+    frames_free(&b->frames);
+    pthread_cond_destroy(&b->changed);
+    pthread_mutex_destroy(&b->lock);
+    free(b);
+    return ok;
+}

@@ -1,0 +1,22 @@
+// Many frames in one process: read ahead, filter, write behind.
+//
+// One GL context, its programs and the environment live for the whole batch. A reader thread, the GL thread (the caller's) and a
+// writer thread work on neighbouring frames; a fixed number of frames is in flight, and memory is bounded by it. The outputs do
+// not depend on that number, on timing or on the order of frames.
+#ifndef SSDO_PIPELINE_BATCH_H
+#define SSDO_PIPELINE_BATCH_H
+
+#include "pipeline/frame.h"
+
+enum { BATCH_IN_FLIGHT = 3 };
+
+// True if the options ask for a sequence: a frame place in the input, or --frames.
+bool batch_is(const options *o);
+
+// Runs the sequence. A frame that fails leaves its target as it was; with --keep-going the next frames are done all the same. At
+// the end ERR_FRAMES lists what failed. One summary line a frame on standard output, unless quiet. `stop` (may be NULL) is looked
+// at between stages: when it becomes non-zero, frames under way are dropped unless they are already being written, and the batch
+// ends with no error of its own.
+bool batch_run(job *j, const volatile int *stop, error *e);
+
+#endif
