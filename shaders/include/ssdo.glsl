@@ -1,5 +1,6 @@
 // The sample set and the point test of screen-space directional occlusion (Ritschel, Grosch, Seidel 2009; chapter 5 of the seeds),
 // shared by the direct pass and the bounce so that both see the same blocked samples.
+#include "include/recorded.glsl"
 
 layout(std140, binding = 1) uniform Params {
     float radius;    // R, scene units
@@ -19,17 +20,6 @@ struct Sample {
     ivec2 sender;   // the pixel that blocks
     vec3 surface;   // where its surface meets the ray of the sample
 };
-
-// Depth, on the ray of `point`, of the surface recorded at pixel q, which is its tangent plane. Taking the pixel centre's depth
-// instead would let every tilted plane shadow itself. A plane so steep that it doubles its depth within the pixel, or ends there,
-// is no evidence: the depth returned is then beyond everything.
-float recorded_depth(ivec2 q, float depth, vec3 point, vec2 screen) {
-    const float NOWHERE = 1e30;
-    vec3 n = normal_at(q), centre = position_of(q, depth);
-    if (is_orthographic()) return abs(n.z) > 1e-4 ? depth + dot(n.xy, centre.xy - point.xy) / n.z : NOWHERE;
-    float ratio = dot(n, ray_at(vec2(q) + 0.5)) / dot(n, ray_at(screen)); // of the depth on this ray to that at the centre
-    return ratio > 0.5 && ratio < 2.0 ? depth * ratio : NOWHERE;
-}
 
 // Direction i of N, cosines stratified: uniform in solid angle (THEORY.md 1.3); distance lambda in (0, R], a permutation of
 // the strata of its own so that it does not follow the elevation.

@@ -22,9 +22,10 @@ typedef struct options {
     const char *method;
     radius_unit radius_unit;
     double radius;
-    int samples;      // 0 = the method's default
-    double thickness; // share of the radius; < 0 auto, INFINITY for inf
-    int blur;         // radius in pixels; 0 none; -1 the method's default
+    int samples;       // 0 = the method's default
+    double thickness;  // share of the radius; < 0 auto, INFINITY for inf
+    double angle_bias; // degrees
+    int blur;          // radius in pixels; 0 none; -1 the method's default
     double scale, contrast;
 
     const char *bounce; // none, ssdo; NULL = the method's own where it has one

@@ -147,11 +147,24 @@ static double choose_inliers(const problem *k)
     return sigma;
 }
 
+// Beyond this median error the positions and the pixels have nothing to do with each other.
+static double worst_median(const problem *k)
+{
+    double x0 = INFINITY, x1 = -INFINITY, y0 = INFINITY, y1 = -INFINITY;
+    for (size_t i = 0; i < k->count; i++) {
+        x0 = fmin(x0, k->points[i].x), x1 = fmax(x1, k->points[i].x);
+        y0 = fmin(y0, k->points[i].y), y1 = fmax(y1, k->points[i].y);
+    }
+    return fmax(1.0, 0.01 * hypot(x1 - x0, y1 - y0));
+}
+
 static solution solve(const problem *k, camera_kind kind, bool searching)
 {
     solution s = {.median = INFINITY, .spread = INFINITY};
     projection p;
     if (!linear_stage(k, kind, searching, &p) || !projection_to_camera(&p, &s.camera)) return s;
+    camera_errors(k, &s.camera);
+    if (!(median_error(k, k->weights) < 2.0 * worst_median(k))) return s; // no refinement will save it
     unsigned all = FREE_FX | FREE_FY | FREE_CENTRE | FREE_POSE;
     double sigma = least_sigma;
     for (int round = 0; round < 3; round++) {
@@ -252,17 +265,6 @@ static bool prepare(const camera_point *points, size_t count, problem *k, error 
     if (!(k->size > 0.0)) k->size = 1.0;
     for (size_t i = 0; i < k->count; i++) k->points[i].world = v3_scale(v3_sub(k->points[i].world, k->centre), 1.0 / k->size);
     return true;
-}
-
-// Beyond this median error the positions and the pixels have nothing to do with each other.
-static double worst_median(const problem *k)
-{
-    double x0 = INFINITY, x1 = -INFINITY, y0 = INFINITY, y1 = -INFINITY;
-    for (size_t i = 0; i < k->count; i++) {
-        x0 = fmin(x0, k->points[i].x), x1 = fmax(x1, k->points[i].x);
-        y0 = fmin(y0, k->points[i].y), y1 = fmax(y1, k->points[i].y);
-    }
-    return fmax(1.0, 0.01 * hypot(x1 - x0, y1 - y0));
 }
 
 bool camera_fit(const camera_point *points, size_t count, camera *out, error *e)

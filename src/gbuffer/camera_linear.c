@@ -87,7 +87,7 @@ static bool fit_dlt(const camera_point *points, const double *weights, size_t co
             for (int r = 0; r < 4; r++)
                 for (int c = r; c < 4; c++) sums[f][r][c] += factor[f] * h[r] * h[c];
     }
-    double a[144] = {0}, values[12], vectors[144];
+    double a[144] = {0}, vector[12];
     for (int r = 0; r < 4; r++)
         for (int c = 0; c < 4; c++) {
             int i = r < c ? r : c, j = r < c ? c : r;
@@ -96,9 +96,9 @@ static bool fit_dlt(const camera_point *points, const double *weights, size_t co
             a[(r + 4) * 12 + c + 8] = a[(c + 8) * 12 + r + 4] = -sums[2][i][j];
             a[(r + 8) * 12 + c + 8] = sums[3][i][j];
         }
-    solve_eigen(12, a, values, vectors);
+    if (!solve_smallest(12, a, vector)) return false;
     *out = (projection){.kind = CAMERA_PERSPECTIVE};
-    memcpy(out->m, vectors, sizeof out->m);
+    memcpy(out->m, vector, sizeof out->m);
     unscale(&k, out);
     orient(points, weights, count, out);
     return isfinite(out->m[0][3]) && isfinite(out->m[1][3]) && isfinite(out->m[2][3]);

@@ -58,6 +58,47 @@ void solve_eigen(int n, double *a, double *values, double *vectors)
     sort_rising(n, values, vectors);
 }
 
+// Cholesky's factor in the lower triangle; a pivot lost to rounding is raised to `least`.
+static void factor(int n, double *a, double least)
+{
+    for (int j = 0; j < n; j++) {
+        double d = a[j * n + j];
+        for (int k = 0; k < j; k++) d -= a[j * n + k] * a[j * n + k];
+        double root = sqrt(d > least ? d : least);
+        a[j * n + j] = root;
+        for (int i = j + 1; i < n; i++) {
+            double v = a[i * n + j];
+            for (int k = 0; k < j; k++) v -= a[i * n + k] * a[j * n + k];
+            a[i * n + j] = v / root;
+        }
+    }
+}
+
+bool solve_smallest(int n, double *a, double *vector)
+{
+    double trace = 0.0;
+    for (int i = 0; i < n; i++) trace += a[i * n + i];
+    if (!(trace > 0.0) || !isfinite(trace)) return false;
+    factor(n, a, 1e-16 * trace);
+    uint64_t random = 1;
+    for (int i = 0; i < n; i++) vector[i] = 0.5 + (double)(solve_random(&random) >> 11) * 0x1p-53;
+    for (int iteration = 0; iteration < 8; iteration++) {
+        double length = 0.0;
+        for (int i = 0; i < n; i++) {
+            for (int k = 0; k < i; k++) vector[i] -= a[i * n + k] * vector[k];
+            vector[i] /= a[i * n + i];
+        }
+        for (int i = n - 1; i >= 0; i--) {
+            for (int k = i + 1; k < n; k++) vector[i] -= a[k * n + i] * vector[k];
+            vector[i] /= a[i * n + i];
+            length += vector[i] * vector[i];
+        }
+        if (!(length > 0.0) || !isfinite(length)) return false;
+        for (int i = 0; i < n; i++) vector[i] /= sqrt(length);
+    }
+    return true;
+}
+
 bool solve_linear(int n, double *a, double *b)
 {
     for (int k = 0; k < n; k++) {

@@ -30,6 +30,32 @@ const method methods[] = {
         .run = pass_alchemy,
     },
     {
+        .name = "hemisphere",
+        .summary = "normal-oriented hemisphere: points in the half space over the normal, with a range check",
+        .weighting = "the lecture's kernel: nearly solid angle, near points count more",
+        .reach = "points up to the radius, most of them within half of it",
+        .blind = "direction: light is SH irradiance times occlusion; whatever the camera does not see",
+        .samples = 64,
+        .blur = 4,
+        .thickness = 0.0,
+        .fills_radiance = false,
+        .bounce = NULL,
+        .run = pass_hemisphere,
+    },
+    {
+        .name = "hbao",
+        .summary = "horizon-based occlusion (Bavoil et al. 2008): one horizon a direction, weight 1 - r^2",
+        .weighting = "solid angle, blockers fade with distance",
+        .reach = "surfaces within the radius",
+        .blind = "all beneath a horizon is blocked; light is SH irradiance times occlusion; whatever the camera does not see",
+        .samples = 256,
+        .blur = 2,
+        .thickness = 0.0,
+        .fills_radiance = false,
+        .bounce = NULL,
+        .run = pass_hbao,
+    },
+    {
         .name = "arc",
         .summary = "arcs blocked by runs of connected surface in slices around the view vector",
         .weighting = "cosine",
@@ -78,4 +104,4 @@ const method *method_find(const char *name)
     return NULL;
 }
 
-const char *method_names(void) { return "ssdo, alchemy, arc, gtao, bitmask"; }
+const char *method_names(void) { return "ssdo, alchemy, hemisphere, hbao, arc, gtao, bitmask"; }

@@ -76,6 +76,8 @@ static bool upload_all(pass_context *c, const gbuffer *gb, error *e)
 
 bool pass_upload_environment(gpu *g, const environment *env, gpu_image *out, error *e)
 {
+    *out = (gpu_image){0};
+    if (env->white) return true; // shaders take its radiance from the frame's block (frame.env.w)
     if (!gpu_image_make(g, out, GL_RGBA32F, env->levels[0].width, env->levels[0].height, env->level_count, e)) return false;
     for (int i = 0; i < env->level_count; i++) gpu_image_upload(out, i, env->levels[i].rgba);
     return gpu_finish(g, "the upload of the environment", e);

@@ -32,7 +32,8 @@ typedef struct pass_settings {
     double thickness;     // scene units; INFINITY allowed
     bool thickness_fixed; // asked for by the user: no method may find a better one
     int samples;
-    int blur; // pixels, 0 none
+    int blur;          // pixels, 0 none
+    double angle_bias; // hbao: degrees above the tangent where occlusion begins
     double scale, contrast;
     double env_level; // < 0: by solid angle
     double bounce_strength;
@@ -78,7 +79,7 @@ bool pass_begin(pass_context *c, gpu *g, const gbuffer *gb, const environment *e
                 log_t *log, error *e);
 void pass_end(pass_context *c);
 
-// The environment's texture, once per batch.
+// The environment's texture, once per batch. The white environment has none: out->id stays 0.
 bool pass_upload_environment(gpu *g, const environment *env, gpu_image *out, error *e);
 
 typedef struct pass_binding {
@@ -100,6 +101,8 @@ bool pass_alchemy(pass_context *c, error *e);     // -> occlusion (1 - S, before
 bool pass_arc(pass_context *c, error *e);         // -> occlusion, radiance, indirect
 bool pass_gtao(pass_context *c, error *e);        // -> occlusion
 bool pass_bitmask(pass_context *c, error *e);     // -> occlusion
+bool pass_hemisphere(pass_context *c, error *e);  // -> occlusion
+bool pass_hbao(pass_context *c, error *e);        // -> occlusion
 bool pass_ssdo(pass_context *c, error *e);        // -> occlusion, radiance, visibility
 bool pass_ssdo_bounce(pass_context *c, error *e); // radiance or beauty, albedo -> indirect
 bool pass_blur(pass_context *c, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e); // in place; NULL = none

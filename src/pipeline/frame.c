@@ -175,6 +175,7 @@ static pass_settings settings_of(const job *j, const frame_result *r)
         .radius = radius,
         .thickness = share * radius,
         .samples = o->samples > 0 ? o->samples : m->samples,
+        .angle_bias = o->angle_bias,
         .blur = o->blur < 0 ? m->blur : o->blur,
         .scale = o->scale,
         .contrast = o->contrast,

@@ -94,6 +94,30 @@ typedef struct reference_alchemy_options {
 // contrast.
 double reference_alchemy(const layer *l, pixel p, const reference_alchemy_options *o);
 
+// --- The lecture's normal-oriented hemisphere ---
+
+typedef struct reference_hemisphere_options {
+    double radius;
+    int elevations, azimuths, distances; // quadrature; 0 = 48, 48, 48
+} reference_hemisphere_options;
+
+// Open share of points P + R u (0.1 + 0.9 t^2) d: u, t uniform in 0..1, d the direction of a point uniform in the half cube
+// [-1, 1]^2 x [0, 1] over the normal, at a random turn. Blocked: the recorded surface is nearer to the camera than the point, and
+// its depth within R of the receiver's.
+double reference_hemisphere(const layer *l, pixel p, const reference_hemisphere_options *o);
+
+// --- HBAO ---
+
+typedef struct reference_hbao_options {
+    double radius;
+    double bias;           // radians
+    int directions, steps; // quadrature; 0 = 128, 512
+} reference_hbao_options;
+
+// 1 - the mean, over directions about V, of sum (1 - (d/R)^2) (sin h - sin h_prev): h the running maximum of the elevation over
+// the plane across V, from the tangent + bias on, of the surface under the line from P's pixel to the projection of R.
+double reference_hbao(const layer *l, pixel p, const reference_hbao_options *o);
+
 // --- Slices: horizon (GTAO) and bitmask ---
 
 typedef struct reference_slice_options {

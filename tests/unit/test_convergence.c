@@ -73,26 +73,31 @@ static figures compare(rig *r, fixture *f, const method *m, pass_settings set)
     return g;
 }
 
-static void converges(fixture *f, const char *name, double thickness, double rmse_limit, double bias_limit)
+static void converges_with(fixture *f, const method *m, pass_settings set, double rmse_limit, double bias_limit)
 {
     rig r;
     error e = {0};
     must(rig_open(&r, NULL, &e), &e);
-    const method *m = method_find(name);
     double before = INFINITY;
     figures g = {0};
     for (int n = 16; n <= 4096; n *= 4) {
-        pass_settings set = rig_settings(m, f->s.radius);
         set.samples = n;
-        set.thickness = thickness;
         g = compare(&r, f, m, set);
-        print_message("%s N=%d: rmse %.5f bias %+.5f\n", name, n, g.rmse, g.bias);
+        print_message("%s N=%d: rmse %.5f bias %+.5f\n", m->name, n, g.rmse, g.bias);
         assert_true(g.rmse < before);
         before = g.rmse;
     }
     rig_close(&r);
     if (g.rmse > rmse_limit || fabs(g.bias) > bias_limit)
-        fail_msg("%s: rmse %.5f (limit %g), bias %+.5f (limit %g) at 4096 samples", name, g.rmse, rmse_limit, g.bias, bias_limit);
+        fail_msg("%s: rmse %.5f (limit %g), bias %+.5f (limit %g) at 4096 samples", m->name, g.rmse, rmse_limit, g.bias,
+                 bias_limit);
+}
+
+static void converges(fixture *f, const char *name, double thickness, double rmse_limit, double bias_limit)
+{
+    pass_settings set = rig_settings(method_find(name), f->s.radius);
+    set.thickness = thickness;
+    converges_with(f, method_find(name), set, rmse_limit, bias_limit);
 }
 
 static void ssdo_converges(void **state)
@@ -118,6 +123,32 @@ static void alchemy_converges(void **state)
     reference_alchemy_options o = {.radius = f.s.radius, .bias = 0.0, .measure = TAPS_UNIFORM_IN_RADIUS};
     for (int i = 0; i < f.count; i++) f.expected[i] = fmax(0.0, 1.0 - reference_alchemy(&f.l, f.pixels[i], &o));
     converges(&f, "alchemy", INFINITY, 0.008, 0.001);
+    fixture_free(&f);
+}
+
+static void hemisphere_converges(void **state)
+{
+    (void)state;
+    static fixture f;
+    fixture_make(&f, scene_clutter, 50.0);
+    reference_hemisphere_options o = {.radius = f.s.radius, .elevations = 40, .azimuths = 40, .distances = 40};
+    for (int i = 0; i < f.count; i++) f.expected[i] = reference_hemisphere(&f.l, f.pixels[i], &o);
+    converges(&f, "hemisphere", INFINITY, 0.003, 0.001);
+    fixture_free(&f);
+}
+
+static void hbao_converges(void **state)
+{
+    (void)state;
+    static fixture f;
+    fixture_make(&f, scene_clutter, 50.0);
+    for (int bias = 0; bias <= 20; bias += 20) {
+        reference_hbao_options o = {.radius = f.s.radius, .bias = bias * M_PI / 180.0};
+        for (int i = 0; i < f.count; i++) f.expected[i] = fmax(0.0, reference_hbao(&f.l, f.pixels[i], &o));
+        pass_settings set = rig_settings(method_find("hbao"), f.s.radius);
+        set.angle_bias = bias;
+        converges_with(&f, method_find("hbao"), set, 0.01, 0.004);
+    }
     fixture_free(&f);
 }
 
@@ -184,6 +215,7 @@ static void ssdo_bounce_matches(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(ssdo_converges), cmocka_unit_test(alchemy_converges),
+                                       cmocka_unit_test(hemisphere_converges), cmocka_unit_test(hbao_converges),
                                        cmocka_unit_test(ssdo_bounce_matches)};
     return cmocka_run_group_tests_name("convergence", tests, NULL, NULL);
 }

@@ -70,6 +70,8 @@ static void an_empty_plane_is_open(void **state)
             reference_slice_options slices = {.radius = s.radius, .thickness = 0.5 * s.radius, .slices = 16};
             assert_near(reference_horizon(&b.l, pixels[k], &slices), 1.0, 1e-6);
             assert_near(reference_bitmask(&b.l, pixels[k], &slices), 1.0, 1e-6);
+            assert_near(reference_hbao(&b.l, pixels[k], &(reference_hbao_options){s.radius, 0.0, 16, 64}), 1.0, 0.0);
+            assert_near(reference_hemisphere(&b.l, pixels[k], &(reference_hemisphere_options){s.radius, 8, 8, 8}), 1.0, 0.0);
             assert_near(reference_alchemy(&b.l, pixels[k], &(reference_alchemy_options){.radius = s.radius}), 0.0, 0.0);
             reference_ssdo_options o = {
                 .radius = s.radius, .thickness = INFINITY, .elevations = 16, .azimuths = 16, .distances = 8};
