@@ -1,10 +1,12 @@
 #version 450 core
-// lint: RELIGHT DIFFUSE ALBEDO RADIANCE INDIRECT SPECULAR EMISSION BEAUTY COVERAGE | RELIGHT VISIBILITY ALBEDO | SPLIT BEAUTY ALBEDO RADIANCE | BEAUTY ALBEDO INDIRECT COVERAGE
+// lint: RELIGHT DIFFUSE ALBEDO RADIANCE INDIRECT SPECULAR EMISSION BEAUTY COVERAGE MULTIPLY_ALL DEPTHMASK | RELIGHT VISIBILITY ALBEDO | SPLIT BEAUTY ALBEDO RADIANCE | BEAUTY ALBEDO INDIRECT COVERAGE
 // The lit picture (DESIGN.md, Composite). One of:
 //   RELIGHT            kD albedo (radiance + indirect) + specular + emission          (radiance mode)
 //   RELIGHT VISIBILITY kD albedo (E_SH / pi visibility + indirect) + specular + emission   (visibility mode)
 //   SPLIT              beauty - (1 - a) albedo direct  (+ albedo indirect)             only direct diffuse light is occluded
 //   (none)             beauty a (+ albedo indirect)                                    a = lerp(1, occlusion, amount)
+// MULTIPLY_ALL: chapter 4's way, the occlusion is multiplied onto the specular light too (THEORY.md 1.10). DEPTHMASK: the whole is
+// scaled by 1 + strength x depthmask; Luft adds it to display values, but a sum would go negative and depend on the exposure.
 // Relit pixels that the surface covers by k < 1: k surface + (1 - k) background.
 #include "include/frame.glsl"
 #include "include/environment.glsl"
@@ -13,7 +15,7 @@ layout(std140, binding = 1) uniform Params {
     float amount;
     int averaged;   // albedo and emission are stored already multiplied by coverage
     int background; // what is behind surfaces: 0 nothing, 1 the beauty, 2 the environment
-    int unused;
+    float depthmask; // strength
 } params;
 
 layout(r32f, binding = 2) readonly uniform image2D occlusion_image; // visibility in VISIBILITY mode
@@ -39,6 +41,10 @@ layout(rgba32f, binding = 7) readonly uniform image2D beauty_image;
 #endif
 #ifdef COVERAGE
 layout(r32f, binding = 11) readonly uniform image2D coverage_image;
+#endif
+
+#ifdef DEPTHMASK
+layout(r32f, binding = 13) readonly uniform image2D depthmask_image;
 #endif
 
 float coverage_at(ivec2 p) {
@@ -79,7 +85,11 @@ vec3 surface(ivec2 p, float k) {
     imageStore(diffuse_image, p, vec4(colour, 0.0));
 #endif
 #ifdef SPECULAR
-    colour += k * imageLoad(specular_image, p).rgb;
+    vec3 specular = imageLoad(specular_image, p).rgb;
+#ifdef MULTIPLY_ALL
+    specular *= mix(1.0, imageLoad(occlusion_image, p).r, params.amount);
+#endif
+    colour += k * specular;
 #endif
 #ifdef EMISSION
     colour += covered * imageLoad(emission_image, p).rgb;
@@ -137,5 +147,9 @@ vec3 composite(ivec2 p) {
 void main() {
     ivec2 p = this_pixel();
     if (!in_tile(p)) return;
-    imageStore(composite_image, p, vec4(composite(p), 0.0));
+    vec3 colour = composite(p);
+#ifdef DEPTHMASK
+    colour *= max(0.0, 1.0 + params.depthmask * imageLoad(depthmask_image, p).r);
+#endif
+    imageStore(composite_image, p, vec4(colour, 0.0));
 }

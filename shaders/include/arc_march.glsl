@@ -14,9 +14,10 @@ struct Run {
     vec3 point, normal; // the last sample
 };
 
-float from_width(Run r, bool ends, float step_size) {
+float thickness_of(Run r, bool ends, float step_size) {
     if (params.fixed_thickness == 1) return params.thickness;
-    return r.starts && ends ? params.kappa * (length(r.last - r.first) + step_size) : params.thickness;
+    float own = params.kappa * (length(r.last - r.first) + step_size);
+    return r.starts && ends ? own : max(own, params.thickness);
 }
 
 // Share of the back of the rim.
@@ -28,7 +29,7 @@ float back_share(Side s, vec2 rim, float thickness) {
 }
 
 uvec2 blocked_by(Side s, Run r, bool ends, float step_size, float jitter) {
-    float high = r.own ? 1.0 : max(r.high, back_share(s, r.rim, from_width(r, ends, step_size)));
+    float high = r.own ? 1.0 : max(r.high, back_share(s, r.rim, thickness_of(r, ends, step_size)));
     return r.alive && r.low <= r.high ? sectors(r.low, high, jitter) : uvec2(0u);
 }
 

@@ -27,6 +27,7 @@ void options_defaults(options *o)
         .env_lod = -1,
         .mode = MODE_RADIANCE,
         .amount = 1,
+        .multiply = "diffuse",
         .prefix = "",
         .device = -1,
         .radius_from = INT_MIN,
@@ -326,9 +327,20 @@ static bool check_together(const options *o, error *e)
     return true;
 }
 
-bool options_parse(int argc, char **argv, options *o, error *e)
+// The two parameter sets of the Alchemy chapter, as defaults: what is typed, before or after, counts.
+static void preset_defaults(options *o, const char *preset)
 {
+    bool scene = strcmp(preset, "scene") == 0;
     options_defaults(o);
+    o->method = "alchemy";
+    o->radius_unit = RADIUS_WORLD;
+    o->radius = scene ? 0.05 : 0.08;
+    o->scale = scene ? 2.0 : 1.7;
+    o->contrast = scene ? 3.0 : 2.2;
+}
+
+static bool walk_arguments(int argc, char **argv, options *o, error *e)
+{
     walk w = {.argc = argc, .argv = argv, .o = o, .e = e};
     bool only_inputs = false;
     for (w.at = 1; w.at < argc; w.at++) {
@@ -343,6 +355,17 @@ bool options_parse(int argc, char **argv, options *o, error *e)
         else
             ok = a[1] == '-' ? parse_long(&w) : parse_short(&w);
         if (!ok) return false;
+    }
+    return true;
+}
+
+bool options_parse(int argc, char **argv, options *o, error *e)
+{
+    options_defaults(o);
+    if (!walk_arguments(argc, argv, o, e)) return false;
+    if (o->preset) {
+        preset_defaults(o, o->preset);
+        if (!walk_arguments(argc, argv, o, e)) return false;
     }
     return check_together(o, e);
 }

@@ -39,6 +39,9 @@ typedef struct options {
     double env_lod;        // < 0 auto
     compose_mode mode;
     double amount;
+    double depthmask_strength;
+    const char *multiply; // diffuse, all
+    const char *preset;   // scene, closeup; NULL = none
 
     const char *role_names[16]; // --position ... --emission, indexed by gbuffer/resolve.h's role
     const char *depth_kind, *albedo_kind, *view_layer;
@@ -46,6 +49,7 @@ typedef struct options {
     const char *camera_file;
 
     bool keep_none;
+    bool multipart;          // --layout: the input's parts as they are stored, ours in a part of their own
     const char *prefix;      // "" by default; put before our layer names
     const char *compression; // NULL = as the input
     bool output_float;

@@ -27,6 +27,9 @@ const option_row option_rows[] = {
     {.group = GROUP_OUTPUT, .name = "keep", .argument = "all|none", .kind = OPT_SWITCH, .offset = FIELD(keep_none),
      .words = WORDS({"all", 0}, {"none", 1}), .fallback = "all",
      .help = "Whether the channels of the input are passed through, untouched."},
+    {.group = GROUP_OUTPUT, .name = "layout", .argument = "single|multipart", .kind = OPT_SWITCH, .offset = FIELD(multipart),
+     .words = WORDS({"single", 0}, {"multipart", 1}), .fallback = "single",
+     .help = "With multipart the input is copied without decoding and the new layers go into a second part, named ssdo: faster, but read by fewer programs."},
     {.group = GROUP_OUTPUT, .name = "prefix", .argument = "P", .kind = OPT_TEXT, .offset = FIELD(prefix), .may_be_empty = true,
      .help = "Text put before the names of the new layers, for inputs that already have layers of those names."},
     {.group = GROUP_OUTPUT, .name = "compression", .argument = "none|rle|zips|zip|piz", .kind = OPT_CHOICE,
@@ -37,6 +40,9 @@ const option_row option_rows[] = {
 
     {.group = GROUP_ESTIMATOR, .name = "method", .argument = "NAME", .kind = OPT_TEXT, .offset = FIELD(method), .pixels = true,
      .fallback = "ssdo", .help = "How visibility is estimated; the manual has a table of the methods."},
+    {.group = GROUP_ESTIMATOR, .name = "preset", .argument = "scene|closeup", .kind = OPT_CHOICE, .offset = FIELD(preset),
+     .words = WORDS({"scene", 0}, {"closeup", 0}), // not recorded: its values are
+     .help = "A set of values for options that are not given: \"scene\" is alchemy with radius 0.05, scale 2 and contrast 3, for a room in metres; \"closeup\" is alchemy with radius 0.08, scale 1.7 and contrast 2.2."},
     {.group = GROUP_ESTIMATOR, .name = "radius", .argument = "R|Npx|auto", .kind = OPT_RADIUS, .offset = FIELD(radius),
      .words = WORDS({"auto", 0}), .pixels = true, .fallback = "auto",
      .help = "Reach of the occlusion in scene units, or in pixels with px. With auto it is measured from the visible surfaces."},
@@ -88,6 +94,13 @@ const option_row option_rows[] = {
     {.group = GROUP_COMPOSITE, .name = "amount", .argument = "F", .kind = OPT_REAL, .offset = FIELD(amount), .min = 0, .max = 1,
      .pixels = true, .fallback = "1",
      .help = "Share of the occlusion multiplied onto a beauty pass. 0 without a bounce gives the beauty back bit for bit."},
+
+    {.group = GROUP_COMPOSITE, .name = "multiply", .argument = "diffuse|all", .kind = OPT_CHOICE, .offset = FIELD(multiply),
+     .words = WORDS({"diffuse", 0}, {"all", 0}), .pixels = true, .fallback = "diffuse",
+     .help = "What the occlusion is multiplied onto: diffuse light, or specular light and all of a beauty pass too."},
+    {.group = GROUP_COMPOSITE, .name = "depthmask-strength", .argument = "S", .kind = OPT_REAL, .offset = FIELD(depthmask_strength),
+     .min = 0, .max = INFINITY, .pixels = true, .fallback = "0",
+     .help = "Darkens the composite behind the edges of nearer objects: it is multiplied by 1 + S times the depthmask layer, at least 0."},
 
     {.group = GROUP_CHANNELS, .name = "position", .argument = "C", .kind = OPT_TEXT, .offset = FIELD(role_names[POSITION]),
      .pixels = true, .help = "Layer or channels of the position pass."},

@@ -38,7 +38,7 @@ static bool check_layout(const char *path, const exr_out_part *p, error *e)
     if (w < 1 || h < 1 || w > EXR_MAX_SIDE || h > EXR_MAX_SIDE || w * h > EXR_MAX_PIXELS)
         return err_set(e, ERR_OUTPUT, path, NULL, "would have a data window of %lld x %lld pixels, which cannot be written",
                        (long long)w, (long long)h);
-    if (p->compression == EXR_COMPRESSION_DWAA || p->compression == EXR_COMPRESSION_DWAB)
+    if (!p->verbatim && (p->compression == EXR_COMPRESSION_DWAA || p->compression == EXR_COMPRESSION_DWAB))
         return err_set(e, ERR_OUTPUT, path, NULL, "cannot be written with DWAA or DWAB compression; use --compression zip");
     if (p->compression < EXR_COMPRESSION_NONE || p->compression >= EXR_COMPRESSION_LAST_TYPE)
         return err_set(e, ERR_OUTPUT, path, NULL, "cannot be written with compression number %d; use --compression zip",

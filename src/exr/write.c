@@ -18,6 +18,9 @@ typedef struct write_worker {
     exr_encode_pipeline_t pipeline;
     bool ready; // pipeline is initialised
     codec codec;
+    void *raw; // a verbatim chunk
+    size_t raw_size, raw_room;
+    int raw_line; // its first
 } write_worker;
 
 // Chunks are encoded as threads come to them and written in order: a thread that is done waits for its chunk's turn. One chunk a
@@ -116,19 +119,44 @@ static exr_result_t encode(write_job *j, write_worker *w, size_t item)
     return rv == EXR_ERR_SUCCESS ? exr_encoding_run(j->core, j->index, &w->pipeline) : rv;
 }
 
+// The chunk as the input stores it. Chunks of equal windows and compression cover the same lines.
+static exr_result_t fetch_verbatim(write_job *j, write_worker *w, size_t item)
+{
+    exr_chunk_info_t info;
+    exr_const_context_t in = j->part->attributes_from->core;
+    int y = j->part->data_window.y0 + (int)item * j->lines;
+    exr_result_t rv = exr_read_scanline_chunk_info(in, j->part->attributes_part, y, &info);
+    if (rv != EXR_ERR_SUCCESS) return rv;
+    if (info.packed_size > w->raw_room) {
+        void *grown = mem_grow(w->raw, info.packed_size, 1, NULL);
+        if (!grown) return EXR_ERR_OUT_OF_MEMORY;
+        w->raw = grown;
+        w->raw_room = info.packed_size;
+    }
+    w->raw_size = info.packed_size;
+    w->raw_line = info.start_y;
+    return exr_read_chunk(in, j->part->attributes_part, &info, w->raw);
+}
+
+static exr_result_t put_chunk(const write_job *j, const write_worker *w)
+{
+    const exr_encode_pipeline_t *p = &w->pipeline;
+    if (j->part->verbatim) return exr_write_scanline_chunk(j->core, j->index, w->raw_line, w->raw, w->raw_size);
+    return exr_write_scanline_chunk(j->core, j->index, p->chunk.start_y, p->compressed_buffer, p->compressed_bytes);
+}
+
 static bool write_chunk(void *context, size_t item, int worker)
 {
     write_job *j = context;
     write_worker *w = &j->workers[worker];
-    exr_result_t rv = encode(j, w, item);
+    exr_result_t rv = j->part->verbatim ? fetch_verbatim(j, w, item) : encode(j, w, item);
     if (rv != EXR_ERR_SUCCESS) return fail(j, rv);
     pthread_mutex_lock(&j->lock);
     while (j->turn != item && j->result == EXR_ERR_SUCCESS) pthread_cond_wait(&j->turn_changed, &j->lock);
     bool ok = j->result == EXR_ERR_SUCCESS;
     pthread_mutex_unlock(&j->lock);
     if (!ok) return false;
-    const exr_encode_pipeline_t *p = &w->pipeline;
-    rv = exr_write_scanline_chunk(j->core, j->index, p->chunk.start_y, p->compressed_buffer, p->compressed_bytes);
+    rv = put_chunk(j, w);
     if (rv != EXR_ERR_SUCCESS) return fail(j, rv);
     pthread_mutex_lock(&j->lock);
     j->turn++;
@@ -168,6 +196,7 @@ static exr_result_t write_part(exr_context_t core, int index, const exr_out_part
     for (int i = 0; j.workers && i < threads; i++) {
         if (j.workers[i].ready) exr_encoding_destroy(core, &j.workers[i].pipeline);
         codec_free(&j.workers[i].codec);
+        free(j.workers[i].raw);
     }
     free(j.workers);
     free(j.channels);
@@ -213,6 +242,8 @@ bool exr_write(const char *path, const exr_out_part *parts, int part_count, int 
     outfile_abort(&file);
     return false;
 }
+
+bool exr_part_is_verbatim(const exr_part *part) { return !part->tiled; }
 
 bool exr_same_file(const char *a, const char *b)
 {

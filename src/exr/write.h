@@ -34,6 +34,8 @@ typedef struct exr_out_part {
     int level;                 // zip level, 0 = the writer's default
     exr_out_channel *channels; // any order; stored sorted by name, as the format demands
     int channel_count;
+    bool verbatim; // copy the chunks of attributes_from's part as they are stored; only if exr_part_is_verbatim says so.
+                   // channels: all of that part's, with data NULL
     const exr_file *attributes_from; // every attribute of this part that is not structural is copied, NULL for none
     int attributes_part;
     const exr_out_attr *attributes; // ours; they replace copied ones of the same name
@@ -42,6 +44,9 @@ typedef struct exr_out_part {
 
 // Writes scanline parts. Two channels of one name in a part, or two parts of one name, are ERR_OUTPUT.
 bool exr_write(const char *path, const exr_out_part *parts, int part_count, int threads, error *e);
+
+// True if a part's chunks can stand in a file of ours as they are: scanlines, nothing subsampled.
+bool exr_part_is_verbatim(const exr_part *part);
 
 // n floats (reading every `stride`-th) into halves. NaN becomes 0, values beyond +-65504 are clamped; returns how many were
 // changed.

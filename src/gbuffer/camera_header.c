@@ -32,12 +32,11 @@ static projection read_as(double m[4][4], int reading, box2 data, box2 display)
     return p;
 }
 
-// How far a reading is from what one expects, in pixels; a mirrored world counts as very far.
-static double oddness(const camera *c, box2 data, box2 display)
+// Distance of the principal point from the centre of the display window, pixels.
+static double off_centre(const camera *c, box2 data, box2 display)
 {
     double x = display.x0 - data.x0 + 0.5 * box2_width(display), y = display.y0 - data.y0 + 0.5 * box2_height(display);
-    double off = hypot(c->cx - x, c->cy - y);
-    return off + (m3_det(c->world_from_camera) < 0.0 ? 1e6 : 0.0);
+    return hypot(c->cx - x, c->cy - y);
 }
 
 bool camera_from_ndc(double m[4][4], box2 data, box2 display, const camera_point *points, size_t count, camera *out)
@@ -45,6 +44,7 @@ bool camera_from_ndc(double m[4][4], box2 data, box2 display, const camera_point
     double best = count ? most_error : 0.25 * box2_width(display);
     bool found = false;
     for (int reading = 0; reading < 32; reading++) {
+        if (count == 0 && reading != 0 && reading != 2) continue;
         projection p = read_as(m, reading, data, display);
         camera c;
         if (!projection_to_camera(&p, &c)) continue;
@@ -53,8 +53,12 @@ bool camera_from_ndc(double m[4][4], box2 data, box2 display, const camera_point
         if (count)
             camera_residual(&c, points, count, &measure, &c.inliers), c.residual = measure;
         else
-            measure = oddness(&c, data, display);
+            measure = off_centre(&c, data, display);
         if (measure < best) best = measure, *out = c, found = true;
+    }
+    if (found && count == 0 && m3_det(out->world_from_camera) < 0.0) {
+        out->has_world = false;
+        out->world_from_camera = m3_identity(), out->origin = v3(0, 0, 0);
     }
     return found;
 }

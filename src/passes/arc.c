@@ -25,7 +25,7 @@ arc_params arc_params_of(const pass_context *c)
     arc_params p = {
         .radius = (float)s->radius,
         .thickness = isinf(s->thickness) ? HUGE_LENGTH : (float)s->thickness,
-        .kappa = knob("KAPPA", 0.25f),
+        .kappa = knob("KAPPA", 1.0f),
         .fixed_thickness = s->thickness_fixed,
         .seed = s->seed,
         .planes = c->planes.count,

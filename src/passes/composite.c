@@ -6,13 +6,14 @@
 bool pass_composite(pass_context *c, error *e)
 {
     const pass_settings *s = &c->set;
-    bool split = !s->relight && c->diffuse_direct.id && c->albedo.id;
+    bool split = !s->relight && !s->multiply_all && c->diffuse_direct.id && c->albedo.id;
     bool bounce = c->indirect.id && c->albedo.id && (s->relight || s->bounce_in_composite);
     struct {
         float amount;
-        int averaged, background, unused;
-    } params = {(float)s->amount, s->averaged_albedo, s->background, 0};
-    char defines[224];
+        int averaged, background;
+        float depthmask;
+    } params = {(float)s->amount, s->averaged_albedo, s->background, (float)s->depthmask_strength};
+    char defines[256];
     snprintf(defines, sizeof defines, "%s%s%s%s%s%s%s%s%s", s->relight ? "RELIGHT 1\n" : "",
              s->relight && s->visibility_mode ? "VISIBILITY 1\n" : "", split ? "SPLIT 1\n" : "", c->albedo.id ? "ALBEDO 1\n" : "",
              split || (s->relight && !s->visibility_mode) ? "RADIANCE 1\n" : "", bounce ? "INDIRECT 1\n" : "",
@@ -20,6 +21,8 @@ bool pass_composite(pass_context *c, error *e)
              c->beauty.id ? "BEAUTY 1\n" : "");
     if (c->coverage.id) snprintf(defines + strlen(defines), sizeof defines - strlen(defines), "COVERAGE 1\n");
     if (c->want_diffuse) strcat(defines, "DIFFUSE 1\n");
+    if (s->multiply_all) strcat(defines, "MULTIPLY_ALL 1\n");
+    if (s->depthmask_strength > 0.0 && c->depthmask.id) strcat(defines, "DEPTHMASK 1\n");
     if (c->want_diffuse && !pass_make(c, &c->diffuse, GL_RGBA32F, 0.0f, e)) return false;
     if (!pass_make(c, &c->composite, GL_RGBA32F, 0.0f, e)) return false;
     const pass_binding bindings[] = {
@@ -34,7 +37,8 @@ bool pass_composite(pass_context *c, error *e)
         {10, &c->emission, GL_READ_ONLY},
         {11, &c->coverage, GL_READ_ONLY},
         {12, &c->diffuse, GL_WRITE_ONLY},
+        {13, &c->depthmask, GL_READ_ONLY},
     };
     // Background pixels have a composite too.
-    return pass_run(c, "composite", defines, &params, sizeof params, bindings, 11, true, e);
+    return pass_run(c, "composite", defines, &params, sizeof params, bindings, 12, true, e);
 }

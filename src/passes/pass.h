@@ -41,6 +41,8 @@ typedef struct pass_settings {
     int seed;
     bool planes; // let large planes stand in for what the camera does not see
     double amount;
+    double depthmask_strength; // 0: the composite is left alone
+    bool multiply_all;         // occlusion is multiplied onto everything, not onto diffuse light only
     bool visibility_mode;
     bool base_albedo;     // albedo is a base colour: metals have one
     bool averaged_albedo; // albedo, emission are stored multiplied by coverage
@@ -61,7 +63,7 @@ typedef struct pass_context {
     // Inputs on the GPU; id 0 where the plan does not need them.
     gpu_image depth, normal, albedo, beauty, material, emission, diffuse_direct, coverage, environment;
     // Layers; id 0 until their pass has run.
-    gpu_image occlusion, visibility, radiance, indirect, specular, diffuse_share, composite, diffuse;
+    gpu_image occlusion, visibility, radiance, indirect, specular, diffuse_share, composite, diffuse, depthmask;
 
     const gbuffer *gb; // borrowed: for what is found on the CPU
     plane_set planes;  // found by the pass that uses them
@@ -110,6 +112,7 @@ bool pass_look(pass_context *c, gpu_image *scalar, error *e); // scale and contr
 bool pass_irradiance(pass_context *c, error *e);              // occlusion -> radiance
 bool pass_edges(pass_context *c, error *e);                   // fills the layers of partly covered pixels
 bool pass_specular(pass_context *c, error *e);                // material, albedo -> specular, diffuse_share
+bool pass_depthmask(pass_context *c, error *e);               // depth -> depthmask
 bool pass_composite(pass_context *c, error *e);               // layers -> composite
 
 #endif

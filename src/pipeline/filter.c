@@ -18,6 +18,7 @@ static bool run_passes(pass_context *c, const plan *p, error *e)
     if (p->bounce && p->blur && !pass_blur(c, NULL, NULL, &c->indirect, e)) return false;
     if (p->edges && c->coverage.id && !pass_edges(c, e)) return false;
     if (p->specular && !pass_specular(c, e)) return false;
+    if (p->depthmask && !pass_depthmask(c, e)) return false;
     return !p->composite || pass_composite(c, e);
 }
 
@@ -57,6 +58,7 @@ static bool read_layers(const pass_context *c, frame_result *r, error *e)
         [LAYER_VISIBILITY] = c->visibility.id ? &c->visibility : &c->occlusion,
         [LAYER_SPECULAR] = &c->specular,
         [LAYER_DIFFUSE] = &c->diffuse,
+        [LAYER_DEPTHMASK] = &c->depthmask,
     };
     for (int i = 0; i < LAYER_COUNT; i++)
         if (r->plan.layers & 1u << i && !read_back(images[i], (layer_id)i, r, e)) return false;

@@ -55,10 +55,11 @@ static resolve_options resolve_options_of(const options *o)
 }
 
 // The channels that will be looked at; with --keep all, every one of them, for they are written again.
-static void want_channels(const job *j, exr_file *file, const resolution *r)
+static void want_channels(const job *j, exr_file *file, const resolution *r, const plan *what)
 {
     for (int p = 0; !j->o->keep_none && p < file->part_count; p++)
-        for (int c = 0; c < file->parts[p].channel_count; c++) file->parts[p].channels[c].wanted = true;
+        for (int c = 0; !output_keeps_chunks(j->o, file, p, what) && c < file->parts[p].channel_count; c++)
+            file->parts[p].channels[c].wanted = true;
     for (int i = 0; i < ROLE_COUNT; i++)
         for (int k = 0; k < r->components[i]; k++) {
             channel_ref ref = r->channels[i][k];
@@ -74,7 +75,7 @@ bool frame_read(const job *j, const char *input, frame_result *r, error *e)
     if (!exr_file_open(input, &r->file, e) || !resolve_channels(r->file, &ro, &r->resolution, j->log, e) ||
         !plan_make(j->o, r->file, &r->resolution, &r->plan, j->log, e) || !output_check_names(j->o, r->file, &r->plan, e))
         return false;
-    want_channels(j, r->file, &r->resolution);
+    want_channels(j, r->file, &r->resolution, &r->plan);
     if (!exr_file_load(r->file, j->threads, e)) return false;
     lap(r, STAGE_READ, &t);
     gbuffer_options g = {
@@ -183,6 +184,8 @@ static pass_settings settings_of(const job *j, const frame_result *r)
         .bounce_strength = o->bounce_strength,
         .world_from_camera = world_from_camera(j, r),
         .amount = o->amount,
+        .depthmask_strength = o->depthmask_strength,
+        .multiply_all = strcmp(o->multiply, "all") == 0,
         .visibility_mode = r->plan.visibility_mode,
         .base_albedo = r->resolution.albedo == ALBEDO_BASE,
         .averaged_albedo = convention_named(r->resolution.convention)->normals_averaged,

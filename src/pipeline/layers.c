@@ -7,7 +7,7 @@ const layer_info layer_table[LAYER_COUNT] = {
     [LAYER_OCCLUSION] = {"occlusion", "R", true},    [LAYER_RADIANCE] = {"radiance", "RGB", true},
     [LAYER_INDIRECT] = {"indirect", "RGB", true},    [LAYER_COMPOSITE] = {"composite", "RGB", true},
     [LAYER_VISIBILITY] = {"visibility", "R", false}, [LAYER_SPECULAR] = {"specular", "RGB", false},
-    [LAYER_DIFFUSE] = {"diffuse", "RGB", false},
+    [LAYER_DIFFUSE] = {"diffuse", "RGB", false},     [LAYER_DEPTHMASK] = {"depthmask", "R", false},
 };
 
 static bool unknown(const char *name, size_t n, error *e)

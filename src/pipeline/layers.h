@@ -14,6 +14,7 @@ typedef enum layer_id {
     LAYER_VISIBILITY,
     LAYER_SPECULAR,
     LAYER_DIFFUSE,
+    LAYER_DEPTHMASK,
     LAYER_COUNT
 } layer_id;
 

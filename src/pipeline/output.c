@@ -51,6 +51,16 @@ bool output_check_names(const options *o, const exr_file *file, const plan *p, e
     return true;
 }
 
+// Nothing of the part is dropped or changed, so its chunks can be copied unseen.
+bool output_keeps_chunks(const options *o, const exr_file *file, int part, const plan *p)
+{
+    const exr_part *in = &file->parts[part];
+    if (!o->multipart || o->keep_none || o->compression || !exr_part_is_verbatim(in)) return false;
+    for (int c = 0; c < in->channel_count; c++)
+        if (is_ours(o, p, in->channels[c].name)) return false;
+    return true;
+}
+
 static int compression_of(const options *o, const exr_part *part)
 {
     static const struct {
@@ -204,7 +214,7 @@ static bool make_parts(assembly *a, const job *j, frame_result *r, error *e)
 {
     const exr_file *f = r->file;
     int main_part = r->resolution.main_part;
-    bool merge = j->o->keep_none || can_merge(f);
+    bool merge = j->o->keep_none || (!j->o->multipart && can_merge(f));
     a->parts = mem_zero((size_t)f->part_count + 1, sizeof *a->parts, e);
     if (!a->parts) return false;
     if (merge) {
@@ -221,8 +231,11 @@ static bool make_parts(assembly *a, const job *j, frame_result *r, error *e)
         if (strcmp(f->parts[i].name, "ssdo") == 0 && exr_attr_exists(f, i, "ssdo/version")) continue; // an earlier run's layers
         exr_out_part *part = &a->parts[a->part_count++];
         *part = part_like(j->o, f, i);
+        if (output_keeps_chunks(j->o, f, i, &r->plan)) part->compression = f->parts[i].compression;
         if (!room(part, f->parts[i].channel_count, e)) return false;
         part->channel_count = keep_channels(j->o, &r->plan, &f->parts[i], part->channels);
+        part->verbatim = output_keeps_chunks(j->o, f, i, &r->plan);
+        if (!part->name[0]) part->name = "input"; // parts of a multi-part file need names
     }
     exr_out_part *mine = &a->parts[a->part_count++];
     *mine = part_like(j->o, f, main_part);
@@ -231,6 +244,7 @@ static bool make_parts(assembly *a, const job *j, frame_result *r, error *e)
     if (!room(mine, a->our_count, e)) return false;
     append_ours(a, mine);
     r->second_part = true;
+    if (j->o->multipart) return true;
     log_warn(j->log, "second-part",
              "%s: its parts differ in window or share channel names, so our layers go into a part named 'ssdo'", f->path);
     return true;

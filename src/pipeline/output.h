@@ -9,6 +9,9 @@
 // --prefix. Called before any pixel is read, so that a long job does not fail at its end.
 bool output_check_names(const options *o, const exr_file *file, const plan *p, error *e);
 
+// --layout multipart: true if the part goes through as stored, so that its channels need not be read for writing.
+bool output_keeps_chunks(const options *o, const exr_file *file, int part, const plan *p);
+
 // Writes the file. A single-part input stays single-part. Parts of a multi-part input are merged into one where windows and names
 // allow; otherwise they are kept as they are and our layers go into a part of their own, named "ssdo".
 bool output_write(const job *j, frame_result *r, const char *path, error *e);

@@ -91,6 +91,7 @@ static void list_steps(plan *p, const options *o, const inputs *in)
          !in->roughness ? "no roughness"
          : !in->env     ? "no environment"
                         : "no layer needs it");
+    step(p, "depthmask", p->depthmask, "unsharp mask of the depth", "no layer needs it");
     step(p, "composite", p->composite, p->relight ? "lit by us" : "the beauty, occluded", "no layer needs it");
     step(p, "environment", p->light, o->env ? "--env" : "white environment of radiance 1", "no layer needs light");
 }
@@ -120,6 +121,7 @@ bool plan_make(const options *o, const exr_file *file, const resolution *r, plan
     p->blur = (o->blur < 0 ? p->method->blur : o->blur) > 0;
     p->look = o->contrast != 1.0 || o->scale != 1.0 || !p->method->fills_radiance;
     p->edges = true;
+    p->depthmask = asked(p, LAYER_DEPTHMASK) || (p->composite && o->depthmask_strength > 0.0);
 
     p->need = NEED_COVERAGE;
     if (in.albedo && (p->bounce || p->composite)) p->need |= NEED_ALBEDO;

@@ -8,7 +8,7 @@
 #include "passes/method.h"
 #include "pipeline/layers.h"
 
-enum { PLAN_STEPS = 10 };
+enum { PLAN_STEPS = 12 };
 
 typedef struct plan_step {
     const char *pass;
@@ -24,7 +24,7 @@ typedef struct plan {
     bool relight;    // the composite is lit by us; otherwise the beauty is occluded
     bool visibility_mode;
     bool want_radiance, want_visibility;
-    bool irradiance, blur, look, bounce, edges, specular, composite;
+    bool irradiance, blur, look, bounce, edges, specular, depthmask, composite;
     bool bounce_in_composite;
     plan_step steps[PLAN_STEPS];
     int step_count;

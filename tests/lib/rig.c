@@ -47,6 +47,7 @@ bool rig_run(rig *r, const gbuffer *gb, const method *m, const pass_settings *se
                        .irradiance = light && !m->fills_radiance,
                        .blur = set->blur > 0,
                        .look = set->contrast != 1.0 || set->scale != 1.0 || !m->fills_radiance,
+                       .depthmask = layers & 1u << LAYER_DEPTHMASK,
                        .bounce = bounce};
     return filter_frame(&r->job, out, e);
 }

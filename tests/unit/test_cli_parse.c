@@ -104,6 +104,25 @@ static void short_options(void **state)
     assert_string_equal(o.inputs[1], "--in.exr");
 }
 
+// A preset fills in what is not given, wherever the rest stands on the line.
+static void presets_are_defaults(void **state)
+{
+    (void)state;
+    options o = good("--preset scene");
+    assert_string_equal(o.method, "alchemy");
+    assert_true(o.radius_unit == RADIUS_WORLD && o.radius == 0.05 && o.scale == 2.0 && o.contrast == 3.0);
+    o = good("--preset=closeup");
+    assert_true(o.radius_unit == RADIUS_WORLD && o.radius == 0.08 && o.scale == 1.7 && o.contrast == 2.2);
+    o = good("--scale 1 --method ssdo --preset scene --radius auto");
+    assert_string_equal(o.method, "ssdo");
+    assert_true(o.radius_unit == RADIUS_AUTO && o.scale == 1.0 && o.contrast == 3.0);
+    assert_int_equal(o.input_count, good("").input_count);
+    char record[256];
+    assert_true(options_record(&o, record, sizeof record)); // what counts is recorded, not the preset
+    assert_null(strstr(record, "preset"));
+    assert_non_null(strstr(record, "--contrast 3"));
+}
+
 static void radius_in_three_forms(void **state)
 {
     (void)state;
@@ -252,6 +271,7 @@ int main(void)
         cmocka_unit_test(defaults_are_the_documented_ones),
         cmocka_unit_test(both_forms_of_a_value),
         cmocka_unit_test(short_options),
+        cmocka_unit_test(presets_are_defaults),
         cmocka_unit_test(radius_in_three_forms),
         cmocka_unit_test(words_for_values),
         cmocka_unit_test(channel_options_hit_their_role),

@@ -550,7 +550,7 @@ static void test_nothing_there(void **state)
     gbuffer_free(&g);
 }
 
-// Scaling, shifting and thread counts do not change what is measured.
+// The radius scales with the scene.
 static void test_radius_is_unit_free(void **state)
 {
     (void)state;
@@ -565,6 +565,26 @@ static void test_radius_is_unit_free(void **state)
     g = built();
     assert_true(fabs(gbuffer_auto_radius(&g) / radius / 1024 - 1) < 1e-5);
     gbuffer_free(&g);
+}
+
+static void test_same_bits_for_any_threads(void **state)
+{
+    (void)state;
+    scene s = base_scene(CAMERA_PERSPECTIVE);
+    s.jitter = 1.0;
+    render(&s);
+    gbuffer g[2];
+    for (int i = 0; i < 2; i++) {
+        resolution r;
+        error e = {0};
+        assert_true(resolve_channels(&file, &(resolve_options){0}, &r, NULL, &e));
+        assert_true(gbuffer_build(&file, &r, &(gbuffer_options){.need = NEED_COVERAGE, .threads = i ? 7 : 1}, &g[i], NULL, &e));
+    }
+    assert_memory_equal(g[0].depth, g[1].depth, N * sizeof(float));
+    assert_memory_equal(g[0].normal, g[1].normal, 4 * N * sizeof(float));
+    assert_memory_equal(g[0].coverage, g[1].coverage, N * sizeof(float));
+    assert_true(g[0].extent == g[1].extent && g[0].off_ray == g[1].off_ray);
+    for (int i = 0; i < 2; i++) gbuffer_free(&g[i]);
 }
 
 // A crop: the data window is a part of the display window, and the centre of projection lies off its middle.
@@ -605,6 +625,7 @@ int main(void)
         cmocka_unit_test(test_nothing_there),
         cmocka_unit_test(test_radius_is_unit_free),
         cmocka_unit_test(test_data_window),
+        cmocka_unit_test(test_same_bits_for_any_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "gbuffer/camera.h"
+#include "gbuffer/camera_header.h"
 #include "gbuffer/camera_solve.h"
 #include "gbuffer/solve.h"
 
@@ -227,6 +228,65 @@ static void test_orthographic(void **state)
     }
 }
 
+// Many views, so that no lucky one hides a fragile decision between the two kinds: under parallel rays the perspective fit is
+// nonsense, and must not get to choose the points that the two are compared on.
+static void test_kind_is_robust(void **state)
+{
+    (void)state;
+    uint64_t random = 31;
+    for (int i = 0; i < 24; i++) {
+        camera c = truth(i & 1 ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE, false);
+        c.world_from_camera = pose(6.28 * uniform(&random), 3 * uniform(&random) - 1.5, 6.28 * uniform(&random), false);
+        observe(&c, 2, 12, false, 40 + (uint64_t)i);
+        round_to_float();
+        spoil(0.1 + 0.3 * uniform(&random), 70 + (uint64_t)i);
+        camera found = fitted();
+        assert_camera(&found, &c, 1e-5, 1e-4);
+    }
+}
+
+// worldToNDC as renderers write it (row vectors): 0..1 and y down, -1..1 and y up, w backwards, transposed.
+static void test_header(void **state)
+{
+    (void)state;
+    box2 display = {0, 0, W - 1, H - 1}, data = {40, 10, W - 1, H - 1};
+    camera c = truth(CAMERA_PERSPECTIVE, false), found;
+    observe(&c, 2, 12, false, 14);
+    for (int i = 0; i < COUNT; i++) points[i].x -= 40, points[i].y -= 10; // data-window pixels
+    for (int form = 0; form < 4; form++) {
+        double m[4][4] = {{0}};
+        for (int axis = 0; axis < 4; axis++) {
+            vec3 unit = v3(axis == 0, axis == 1, axis == 2);
+            vec3 p = axis < 3 ? m3_apply(m3_transpose(c.world_from_camera), unit) : camera_from_world(&c, v3(0, 0, 0));
+            double x = (c.fx * p.x + c.cx * p.z) / W, y = (c.fy * p.y + c.cy * p.z) / H, sign = form == 2 ? -1 : 1;
+            if (form) x = 2 * x - p.z, y = p.z - 2 * y;
+            int r = axis;
+            m[r][0] = sign * x, m[r][1] = sign * y, m[r][2] = p.z, m[r][3] = sign * p.z;
+        }
+        if (form == 3)
+            for (int a = 0; a < 4; a++)
+                for (int b = 0; b < a; b++) {
+                    double swap = m[a][b];
+                    m[a][b] = m[b][a], m[b][a] = swap;
+                }
+        for (int with_points = 0; with_points < 2; with_points++) {
+            if (form == 3 && !with_points) continue; // not tried then
+            assert_true(camera_from_ndc(m, data, display, points, with_points ? COUNT : 0, &found));
+            camera expected = c;
+            expected.cx -= 40, expected.cy -= 10;
+            assert_int_equal(found.source, CAMERA_FROM_HEADER);
+            assert_true(found.has_world == (with_points || form != 2));
+            if (found.has_world)
+                assert_camera(&found, &expected, 1e-9, 1e-8);
+            else
+                assert_true(fabs(found.fx / c.fx - 1) < 1e-9 && fabs(found.cx - expected.cx) < 1e-6);
+        }
+        // A header that is not this picture's is refused.
+        for (int r = 0; r < 4; r++) m[r][0] += 0.03 * m[r][3];
+        assert_false(camera_from_ndc(m, data, display, points, COUNT, &found));
+    }
+}
+
 static void test_one_plane(void **state)
 {
     (void)state;
@@ -357,6 +417,8 @@ int main(void)
         cmocka_unit_test(test_json),
         cmocka_unit_test(test_conspiring_points),
         cmocka_unit_test(test_refine),
+        cmocka_unit_test(test_kind_is_robust),
+        cmocka_unit_test(test_header),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -161,6 +161,28 @@ static void sample_passes_through(void **state)
     channels_pass_through("samples/still.exr", path_of("still.exr"), EXR_PIXEL_HALF);
 }
 
+static void multipart(options *o) { o->multipart = true; }
+
+// --layout multipart: part 0 holds the input's own chunks, whatever their compression.
+static void multipart_copies_the_input(void **state)
+{
+    (void)state;
+    static raw a[128], b[128];
+    filter_file("samples/still.exr", path_of("multi.exr"), multipart);
+    int na = read_raw("samples/still.exr", a, 128), nb = read_raw(path_of("multi.exr"), b, 128);
+    assert_int_equal(na, nb);
+    for (int i = 0; i < na; i++) assert_memory_equal(find(b, nb, a[i].name)->bytes, a[i].bytes, a[i].size);
+    free_raw(a, na);
+    free_raw(b, nb);
+    exr_file *f = NULL;
+    error e = {0};
+    must(exr_file_open(path_of("multi.exr"), &f, &e), &e);
+    assert_int_equal(f->part_count, 2);
+    assert_string_equal(f->parts[1].name, "ssdo");
+    assert_int_equal(f->parts[1].channel_count, 11);
+    exr_file_close(f);
+}
+
 static void make_file(const char *path, const char *convention)
 {
     scene s = {0};
@@ -245,6 +267,7 @@ int main(void)
         cmocka_unit_test(odd_values_pass_through),
         cmocka_unit_test(amount_zero_is_the_beauty),
         cmocka_unit_test(own_layers_are_replaced),
+        cmocka_unit_test(multipart_copies_the_input),
     };
     return cmocka_run_group_tests_name("output", tests, make_folder, remove_folder);
 }

@@ -61,22 +61,22 @@ static json_object *report_for(const char *input, const char *layers, const char
 }
 
 // A picture of the clutter, without what the options leave out.
-static void write_scene(scene_exr_options options, const char *path)
+static void write_scene(scene_exr_options how, const char *path)
 {
     static scene s;
     error e = {0};
-    options.convention = "plain";
+    how.convention = "plain";
     scene_clutter(&s);
     view v = view_perspective(WIDTH, HEIGHT, 50.0, 1.0);
     view_scene(&v, &s);
-    must(scene_write(&s, &v, &options, path, &e), &e);
+    must(scene_write(&s, &v, &how, path, &e), &e);
 }
 
-static json_object *report_of_scene(scene_exr_options options, const char *layers, const char *env)
+static json_object *report_of_scene(scene_exr_options how, const char *layers, const char *env)
 {
     char path[96];
     path_of("in.exr", path);
-    write_scene(options, path);
+    write_scene(how, path);
     json_object *report = report_for(path, layers, env);
     remove(path);
     return report;
@@ -113,7 +113,7 @@ static const char *why(json_object *report, const char *pass)
 }
 
 static bool uploads(json_object *report, const char *name) { return entry(report, "uploads", "name", name) != NULL; }
-static bool timed(json_object *report, const char *stage) { return entry(report, "times", "stage", stage) != NULL; }
+static bool timed(json_object *report, const char *name) { return entry(report, "times", "stage", name) != NULL; }
 static int64_t bytes_of(json_object *report, const char *name)
 {
     return json_object_get_int64(field(entry(report, "uploads", "name", name), "bytes"));

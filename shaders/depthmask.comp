@@ -1,0 +1,45 @@
+#version 450 core
+// lint: ACROSS | DOWN
+// Depth darkening (Luft, Colditz, Deussen 2006): the unsharp mask of the depth buffer. With D the depth normalised to 0..1 and G a
+// Gaussian over the pixels that hold a surface (the weights of the rest are left out and divided away),
+//   mask = min(0, G*D - D)
+// is negative where a surface lies behind something near it on the screen, and 0 elsewhere (THEORY.md 1.15). Separable: ACROSS sums
+// along rows, DOWN along columns.
+#include "include/frame.glsl"
+
+layout(std140, binding = 1) uniform Params {
+    float near;      // depth that becomes 0
+    float scale;     // 1 / (depth that becomes 1 - near); 0 where all depths are equal
+    float sigma;     // pixels
+    int radius;      // pixels
+} params;
+
+layout(rg32f, binding = 2) uniform image2D sums_image; // sum of w D, sum of w
+#ifdef DOWN
+layout(r32f, binding = 3) writeonly uniform image2D mask_image;
+#endif
+
+float normalised(float depth) { return clamp((depth - params.near) * params.scale, 0.0, 1.0); }
+
+float gaussian(int i) { return exp(-0.5 * float(i * i) / (params.sigma * params.sigma)); }
+
+void main() {
+    ivec2 p = this_pixel();
+    if (!in_tile(p)) return;
+    vec2 sums = vec2(0.0);
+#ifdef DOWN
+    float depth = depth_at(p), mask = 0.0;
+    for (int i = -params.radius; depth != 0.0 && i <= params.radius; i++) {
+        ivec2 q = p + ivec2(0, i);
+        if (in_frame(q)) sums += gaussian(i) * imageLoad(sums_image, q).rg;
+    }
+    if (depth != 0.0) mask = sums.r / sums.g - normalised(depth);
+    imageStore(mask_image, p, vec4(mask < -1e-6 ? mask : 0.0)); // not the rounding of the sums
+#else
+    for (int i = -params.radius; i <= params.radius; i++) {
+        float depth = depth_at(p + ivec2(i, 0));
+        if (depth != 0.0) sums += gaussian(i) * vec2(normalised(depth), 1.0);
+    }
+    imageStore(sums_image, p, vec4(sums, 0.0, 0.0));
+#endif
+}

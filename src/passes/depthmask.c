@@ -1,0 +1,49 @@
+#include <math.h>
+#include <stdlib.h>
+
+#include "passes/pass.h"
+
+// Standard deviation of the Gaussian, as a share of the picture's diagonal, so that the look does not depend on resolution.
+static const double SIGMA = 0.01;
+
+static int by_value(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+// The depths that become 0 and 1: the 2nd and 98th percentile, so that no stray pixel sets the scale of the whole picture.
+static void depth_range(const gbuffer *gb, float *near, float *far)
+{
+    enum { MOST = 4096 };
+    float depths[MOST];
+    size_t n = 0, count = (size_t)gb->width * (size_t)gb->height, stride = gb->valid / MOST + 1, seen = 0;
+    for (size_t i = 0; i < count && n < MOST; i++)
+        if (gb->depth[i] > 0.0f && seen++ % stride == 0) depths[n++] = gb->depth[i];
+    *near = *far = 0.0f;
+    if (n == 0) return;
+    qsort(depths, n, sizeof *depths, by_value);
+    *near = depths[n * 2 / 100];
+    *far = depths[n * 98 / 100];
+}
+
+bool pass_depthmask(pass_context *c, error *e)
+{
+    struct {
+        float near, scale, sigma;
+        int radius;
+    } params;
+    float far;
+    depth_range(c->gb, &params.near, &far);
+    params.scale = far > params.near ? 1.0f / (far - params.near) : 0.0f;
+    params.sigma = (float)(SIGMA * hypot(c->width, c->height));
+    params.radius = (int)ceilf(3.0f * params.sigma);
+    gpu_image sums = {0};
+    const pass_binding bindings[] = {{2, &sums, GL_READ_WRITE}, {3, &c->depthmask, GL_WRITE_ONLY}};
+    // Rows that hold no surface themselves are read by those that do: everywhere.
+    bool ok = pass_make(c, &sums, GL_RG32F, 0.0f, e) && pass_make(c, &c->depthmask, GL_R32F, 0.0f, e) &&
+              pass_run(c, "depthmask", "ACROSS 1\n", &params, sizeof params, bindings, 1, true, e) &&
+              pass_run(c, "depthmask", "DOWN 1\n", &params, sizeof params, bindings, 2, false, e);
+    gpu_image_free(&sums);
+    return ok;
+}
