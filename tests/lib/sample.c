@@ -113,6 +113,34 @@ float *sample_read(const char *path, const char *layer, const char *letters, err
     return v;
 }
 
+static bool has_surface(const sample *s, int x, int y)
+{
+    if (x < 0 || y < 0 || x >= s->width || y >= s->height) return true;
+    float depth = s->depth[y * s->width + x];
+    return depth > 0.0f && depth < 1e9f;
+}
+
+// Coverage is A on transparent film; on opaque film the averaged normal is shorter where background takes part.
+static bool is_filled(const sample *s, int x, int y)
+{
+    int i = y * s->width + x;
+    const float *n = s->normal + 3 * i;
+    if (!has_surface(s, x, y)) return false;
+    if (s->film_transparent) return s->alpha[i] > 0.999f;
+    for (int dy = -1; dy <= 1; dy++)
+        for (int dx = -1; dx <= 1; dx++)
+            if (!has_surface(s, x + dx, y + dy)) return n[0] * n[0] + n[1] * n[1] + n[2] * n[2] > 0.998f;
+    return true;
+}
+
+static bool find_scored(sample *s, error *e)
+{
+    s->scored = mem_zero((size_t)s->width * (size_t)s->height, sizeof *s->scored, e);
+    for (int y = 0; s->scored && y < s->height; y++)
+        for (int x = 0; x < s->width; x++) s->scored[y * s->width + x] = is_filled(s, x, y);
+    return s->scored != NULL;
+}
+
 bool sample_load(sample *s, error *e)
 {
     exr_file *main = open_all(s->file, e), *truth = main ? open_all(s->truth, e) : NULL;
@@ -131,7 +159,7 @@ bool sample_load(sample *s, error *e)
     s->ao[1] = take(truth, "AO", "R", e);
     s->direct[1] = take(truth, "DiffDir", "RGB", e);
     s->indirect[1] = take(truth, "DiffInd", "RGB", e);
-    ok = e->code == ERR_NONE;
+    ok = e->code == ERR_NONE && find_scored(s, e);
 out:
     exr_file_close(main);
     exr_file_close(truth);
@@ -147,6 +175,8 @@ void sample_free(sample *s)
         free(*all[i]);
         *all[i] = NULL;
     }
+    free(s->scored);
+    s->scored = NULL;
 }
 
 static int by_value(const void *a, const void *b)

@@ -19,6 +19,7 @@ typedef struct sample {
     float *ao[2], *direct[2], *indirect[2]; // renders A and B: 1, 3, 3 a pixel
     float *beauty, *alpha, *albedo;         // 3, 1, 3 a pixel
     float *normal;                          // 3 a pixel, as stored
+    bool *scored; // pixels that one surface fills: Blender multiplies AO by coverage, so on edges it is not the truth
 } sample;
 
 // Reads DIR/scenes.json. Returns the number of scenes, 0 with the error filled if there are none.
@@ -30,7 +31,8 @@ void sample_free(sample *s);
 // One layer of part 0 of a file as floats, interleaved: components `letters`. NULL with the error filled. The caller frees.
 float *sample_read(const char *path, const char *layer, const char *letters, error *e);
 
-static inline bool sample_is_surface(const sample *s, int i) { return s->depth[i] > 0.0f && s->depth[i] < 1e9f; }
+// Pixels that count: a surface in the centre, and no background in the pixel.
+static inline bool sample_is_surface(const sample *s, int i) { return s->scored[i]; }
 
 typedef struct score {
     double rmse, bias, p99, mean; // of the surface pixels; p99 of |x - (A + B) / 2|; mean of the truth
