@@ -49,6 +49,7 @@ all: $(BIN) $(PLUGIN)
 help:
 	@echo 'make demo     install what is missing, build, filter a sample, make a contact sheet'
 	@echo 'make check    install what is missing, build, run all tests'
+	@echo 'make bench    error against time of every method (bench-unseen: on scenes rendered afresh)'
 	@echo 'make all | lint | format | install PREFIX= DESTDIR= | uninstall | clean'
 
 $(BIN): $(BUILD)/src/main.o $(BUILD)/libssdo.a
@@ -98,6 +99,35 @@ check: deps-check
 
 .PHONY: unit
 unit: $(UNIT)
+
+# Error against time of every method (tests/bench/bench.h): a table, a plot, all figures as CSV, in $(BUILD)/bench.
+BENCH     := bench cache embree generated plot references rows run scenes summary table yardstick
+BENCH_OBJ := $(BENCH:%=$(BUILD)/tests/bench/%.o)
+UNSEEN    ?= 101# the variant of the scenes that bench-unseen renders
+UNSEEN_SPP ?= 96
+$(BUILD)/bench-program: $(BENCH_OBJ) $(TESTLIB) $(BUILD)/libssdo.a
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lembree3 $(PKG_LIBS)
+
+.PHONY: bench bench-unseen mutate
+bench: deps-bench
+	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench-program
+	@$(BUILD)/bench-program --out $(BUILD)/bench --cache $(BUILD)/bench-cache
+
+# Scenes that nothing was tuned on: rendered once for each UNSEEN.
+bench-unseen: deps-bench
+	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench-program
+	@$(MAKE) --no-print-directory $(BUILD)/unseen/$(UNSEEN)/rendered
+	@$(BUILD)/bench-program --rendered-only --samples $(BUILD)/unseen/$(UNSEEN) --out $(BUILD)/bench-unseen \
+	    --cache $(BUILD)/bench-cache --title 'Bench of unseen scenes, variant $(UNSEEN)' --command 'make bench-unseen UNSEEN=$(UNSEEN)'
+
+$(BUILD)/unseen/%/rendered:
+	@mkdir -p $(@D)
+	blender -b --factory-startup -P samples/render.py -- --all --out $(@D) --variant $* --size 480x270 --spp $(UNSEEN_SPP) >$(@D)/log
+	@touch $@
+
+# Which errors of 5 % in the shaders the tests see.
+mutate: unit
+	@sh tests/bench/mutate.sh $(BUILD)
 
 lint: deps-check
 	@sh tests/lint.sh $(BUILD)

@@ -1,13 +1,29 @@
 #version 450 core
-// lint: HORIZON | BITMASK | RUNS | RUNS PLANES
-// Occlusion in slices around the view vector, each a set of 64 sectors of equal cosine weight (THEORY.md 2 and 3).
-//   occlusion = sum over slices of |n_p| (cos n + n sin n) (open share) / sum of |n_p| (cos n + n sin n)
-// so that an empty plane is exactly 1. HORIZON and BITMASK are the older methods in the same frame; RUNS is `arc`.
+// lint: HORIZON | BITMASK | RUNS | RUNS PLANES | RUNS PLANES LIGHT | RUNS LIGHT VISIBILITY | RUNS PLANES BOUNCE
+// Slices around the view vector, each a set of 64 sectors of equal cosine weight (THEORY.md 2 and 3). With the weight of a slice
+// w = |n_p| (cos n + n sin n), and sums over slices:
+//   occlusion = sum w (open share) / sum w                          so that an empty plane is exactly 1
+//   LIGHT:  radiance = sum w (open share x environment) / sum w + suns,  visibility = its luminance over that of the open sky
+//   BOUNCE: indirect = sum w (blocked share x what the nearest blocker sends) / sum w
+// The sectors are blocked by HORIZON or BITMASK, the older methods, or by RUNS and PLANES, which are `arc`.
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
+#include "include/environment.glsl"
 #include "include/arc_params.glsl"
 #include "include/arc_slice.glsl"
 #include "include/arc_line.glsl"
+#include "include/arc_sectors.glsl"
+
+layout(r32f, binding = 2) writeonly uniform image2D scalar_image; // occlusion, or with LIGHT the visibility
+layout(rgba32f, binding = 3) writeonly uniform image2D light_image; // radiance or indirect
+layout(rgba32f, binding = 4) readonly uniform image2D sender_image; // light before albedo, or a beauty
+layout(rgba32f, binding = 5) readonly uniform image2D albedo_image;
+
+vec3 sent_by(ivec2 q) {
+    vec3 L = imageLoad(sender_image, q).rgb;
+    return params.exitant == 1 ? L : L * imageLoad(albedo_image, q).rgb;
+}
+
 #ifdef RUNS
 #include "include/arc_march.glsl"
 #else
@@ -16,20 +32,17 @@
 #ifdef PLANES
 #include "include/arc_planes.glsl"
 #endif
+#ifdef LIGHT
+#include "include/arc_light.glsl"
+#endif
 
-layout(r32f, binding = 2) writeonly uniform image2D occlusion_image;
-
-// One side of a slice; n is the angle of the projected normal towards this side.
-Side side_of(vec3 V, vec3 outwards, vec3 N, float n, float inverse_length, float eye_distance) {
-    Side s;
-    s.cos_n = cos(n);
-    s.sin_n = sin(n);
-    s.tangent = s.cos_n * outwards - s.sin_n * V;
-    s.normal = N * inverse_length;
-    s.below = 0.5 * (s.cos_n + (n - 0.5 * PI) * s.sin_n);
-    s.scale = 1.0 / (s.cos_n + n * s.sin_n);
-    s.eye = vec2(-s.sin_n, s.cos_n) * (is_orthographic() ? 1.0 : eye_distance);
-    return s;
+void store(ivec2 p, float scalar, vec3 light) {
+#if defined(LIGHT) || defined(BOUNCE)
+    imageStore(light_image, p, vec4(light, 0.0));
+#endif
+#if defined(VISIBILITY) || !(defined(LIGHT) || defined(BOUNCE))
+    imageStore(scalar_image, p, vec4(scalar));
+#endif
 }
 
 void main() {
@@ -37,30 +50,53 @@ void main() {
     if (!in_tile(p)) return;
     float depth = depth_at(p);
     if (depth == 0.0) {
-        imageStore(occlusion_image, p, vec4(1.0));
+        store(p, 1.0, vec3(0.0));
         return;
     }
     vec3 P = position_of(p, depth), N = normal_at(p), V = view_of(P);
     mat3 around = tangent_frame(V);
     vec2 origin = vec2(p) + 0.5;
-    float eye_distance = length(P);
-    vec2 turn = pixel_hash(uvec2(p) + uint(params.seed) * 7919u);
-    float open = 0.0, all = 0.0;
+    float eye_distance = length(P), open = 0.0, all = 0.0;
+    uint seed = uint(params.seed) * 7919u;
+    vec2 turn = pixel_hash(uvec2(p) + seed);
+#ifdef LIGHT
+    Light light = Light(vec3(0.0), 0.0, 0.0);
+#endif
+#ifdef BOUNCE
+    vec3 bounced = vec3(0.0);
+#endif
     for (int i = 0; i < params.slices; i++) {
         float phi = PI * (float(i) + turn.x) / float(params.slices);
-        vec2 noise = pixel_hash(uvec2(p) + uvec2(uint(params.seed) * 7919u + 131u * uint(i + 1), 17u));
+        vec2 noise = pixel_hash(uvec2(p) + uvec2(seed + 131u * uint(i + 1), 17u));
         vec3 across = cos(phi) * around[0] + sin(phi) * around[1];
         float up = dot(N, V), sideways = dot(N, across), squared = max(up * up + sideways * sideways, 1e-12);
         float inverse_length = inversesqrt(squared), n = atan(sideways, up);
         Side right = side_of(V, across, N, n, inverse_length, eye_distance), left = side_of(V, -across, N, -n, inverse_length, eye_distance);
         Line line = line_of(P, V, across, origin), back = line_of(P, V, -across, origin);
-        uvec2 blocked = march(right, line, P, N, noise.x, noise.y) | mirrored(march(left, back, P, N, 1.0 - noise.x, 1.0 - noise.y));
+        Sectors slots = march(right, line, P, N, noise.x, noise.y);
+        add_mirrored(slots, march(left, back, P, N, 1.0 - noise.x, 1.0 - noise.y));
 #ifdef PLANES
-        blocked |= behind_planes(right, V, across, n, line, back, P, noise.y);
+        block_by_planes(slots, right, V, across, n, line, back, P, noise.y);
 #endif
         float weight = sqrt(squared) * (cos(n) + n * sin(n));
-        open += weight * (1.0 - sector_share(blocked));
+        open += weight * (1.0 - sector_share(slots.blocked));
         all += weight;
+#ifdef LIGHT
+        add_sky(light, right, V, across, n, weight, slots.blocked, noise.y);
+#endif
+#ifdef BOUNCE
+        bounced += weight * slots.light;
+#endif
     }
-    imageStore(occlusion_image, p, vec4(open / all));
+#if defined(LIGHT)
+    light.open /= all;
+    light.open_luminance /= all;
+    light.all_luminance /= all;
+    add_suns(light, P, N, V, eye_distance, origin, turn.y);
+    store(p, light.all_luminance > 0.0 ? min(1.0, light.open_luminance / light.all_luminance) : 1.0, light.open);
+#elif defined(BOUNCE)
+    store(p, 0.0, params.strength * bounced / all);
+#else
+    store(p, open / all, vec3(0.0));
+#endif
 }

@@ -1,5 +1,5 @@
 #version 450 core
-// lint: VISIBILITY RADIANCE INDIRECT | NOTHING
+// lint: VISIBILITY RADIANCE INDIRECT SH | NOTHING
 // Layers of pixels that a surface covers only in part and whose centre missed it (no position): taken from the nearest pixel with a
 // surface, of those equally near the one with the most similar normal (DESIGN.md, Edges).
 #include "include/frame.glsl"
@@ -15,6 +15,12 @@ layout(rgba32f, binding = 5) uniform image2D radiance_image;
 #endif
 #ifdef INDIRECT
 layout(rgba32f, binding = 6) uniform image2D indirect_image;
+#endif
+
+#ifdef SH
+layout(rgba32f, binding = 7) uniform image2D sh0_image;
+layout(rgba32f, binding = 8) uniform image2D sh1_image;
+layout(rgba32f, binding = 9) uniform image2D sh2_image;
 #endif
 
 const int REACH = 2;
@@ -46,5 +52,10 @@ void main() {
 #endif
 #ifdef INDIRECT
     imageStore(indirect_image, p, imageLoad(indirect_image, from));
+#endif
+#ifdef SH
+    imageStore(sh0_image, p, imageLoad(sh0_image, from));
+    imageStore(sh1_image, p, imageLoad(sh1_image, from));
+    imageStore(sh2_image, p, imageLoad(sh2_image, from));
 #endif
 }

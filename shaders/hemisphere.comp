@@ -30,13 +30,8 @@ vec3 kernel(int i, vec4 shift) {
 }
 
 bool occluded(vec3 P, vec3 point) {
-    if (!in_front(point)) return false;
-    vec2 screen = screen_of(point);
-    ivec2 q = ivec2(floor(screen));
-    float depth = depth_at(q);
-    if (depth == 0.0) return false; // no surface recorded there, or outside the frame: open
-    float recorded = recorded_depth(q, depth, point, screen);
-    return point.z - recorded > 8.0 * rounding(point) && abs(P.z - recorded) < params.radius;
+    Recorded r = recorded_at(point);
+    return behind_recorded(r, point) > 0.0 && abs(P.z - r.depth) < params.radius;
 }
 
 void main() {

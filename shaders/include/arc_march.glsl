@@ -11,7 +11,7 @@ struct Run {
     vec2 first, last; // ends, in the slice
     vec2 rim;         // the point of the highest share
     float last_share, last_distance;
-    vec3 point, normal; // the last sample
+    vec3 point, normal, light; // of the last sample
 };
 
 float thickness_of(Run r, bool ends, float step_size) {
@@ -28,9 +28,10 @@ float back_share(Side s, vec2 rim, float thickness) {
     return share(s, rim + ray * min(thickness, max(leaves, 0.0)));
 }
 
-uvec2 blocked_by(Side s, Run r, bool ends, float step_size, float jitter) {
+// Ends a run: all it blocks, as far as its samples have not done so already.
+void finish(inout Sectors slots, Side s, Run r, bool ends, float step_size, float jitter) {
     float high = r.own ? 1.0 : max(r.high, back_share(s, r.rim, thickness_of(r, ends, step_size)));
-    return r.alive && r.low <= r.high ? sectors(r.low, high, jitter) : uvec2(0u);
+    if (r.alive && r.low <= r.high) block(slots, sectors(r.low, high, jitter), r.light);
 }
 
 void include_share(inout Run r, float c, vec2 w) {
@@ -39,9 +40,9 @@ void include_share(inout Run r, float c, vec2 w) {
     r.high = max(r.high, c);
 }
 
-uvec2 march(Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
-    uvec2 blocked = uvec2(0u);
-    Run run = Run(true, true, false, 2.0, -1.0, vec2(0.0), vec2(0.0), vec2(0.0), 1.0, 0.0, P, N);
+Sectors march(Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
+    Sectors slots = all_open();
+    Run run = Run(true, true, false, 2.0, -1.0, vec2(0.0), vec2(0.0), vec2(0.0), 1.0, 0.0, P, N, vec3(0.0));
     float limit = min(line.reach, line.border), before = 0.0, step_size = 0.0;
     float R = params.radius;
     for (int i = 0; i < params.steps; i++) {
@@ -53,11 +54,14 @@ uvec2 march(Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) 
         vec3 Q = position_of(q, depth), n = normal_at(q), gap = Q - run.point;
         float pixel = footprint(depth), room = params.tolerance * pixel * (at - before);
         bool joined = run.alive && surface && min(abs(dot(run.normal, gap)), abs(dot(n, gap))) < room;
+#ifdef BOUNCE
+        vec3 light = sent_by(q) * (dot(n, P - Q) > 0.0 ? 1.0 : 0.0);
+#endif
         bool nearer = Q.z < run.point.z;
         vec2 w = in_slice(s, Q - P);
         float distance = length(Q - P), c = share(s, w);
         if (!joined) {
-            blocked |= blocked_by(s, run, !surface || !nearer, step_size, jitter);
+            finish(slots, s, run, !surface || !nearer, step_size, jitter);
             run.starts = !run.alive || nearer;
             run.alive = surface;
             run.own = false;
@@ -70,6 +74,9 @@ uvec2 march(Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) 
             if (was_inside || is_inside) {
                 float f = clamp((R - run.last_distance) / (distance - run.last_distance), 0.0, 1.0);
                 if (was_inside == is_inside) f = 1.0;
+#ifdef BOUNCE
+                block(slots, sectors(min(run.last_share, c), max(run.last_share, c), jitter), light);
+#endif
                 include_share(run, was_inside ? run.last_share : mix(run.last_share, c, f), was_inside ? run.last : mix(run.last, w, f));
                 include_share(run, is_inside ? c : mix(run.last_share, c, f), is_inside ? w : mix(run.last, w, f));
             }
@@ -79,6 +86,9 @@ uvec2 march(Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) 
         run.last_distance = distance;
         run.point = Q;
         run.normal = n;
+#ifdef BOUNCE
+        run.light = light;
+#endif
         step_size = (at - before) * pixel;
         before = at;
     }
@@ -91,5 +101,6 @@ uvec2 march(Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) 
         vec2 end = run.last + e * (sqrt(max(b * b + R * R - run.last_distance * run.last_distance, 0.0)) - b);
         include_share(run, share(s, end), end);
     }
-    return blocked | blocked_by(s, run, false, step_size, jitter);
+    finish(slots, s, run, false, step_size, jitter);
+    return slots;
 }

@@ -7,6 +7,7 @@ struct Plane {
     vec4 equation; // xyz unit normal, w offset: dot(xyz, x) = w
     vec4 u, v;     // xyz axis of the support, w its centre along it
     vec4 half_size;
+    vec4 light; // rgb: mean of what its pixels send
     uvec4 cells[2]; // 16 x 16 bits over the support: the picture does not show the plane to be absent there
 };
 layout(std140, binding = 2) uniform Planes { Plane planes[12]; };
@@ -38,23 +39,21 @@ bool supported(Plane k, vec3 X) {
     return all(lessThanEqual(abs(at), vec2(1.0))) && ((word >> (cell.x + 16u * (cell.y & 1u))) & 1u) == 1u;
 }
 
+// Without a radius a plane is not believed farther from its support than the support is wide.
+bool near_support(Plane k, vec3 X) {
+    vec2 at = vec2(dot(k.u.xyz, X) - k.u.w, dot(k.v.xyz, X) - k.v.w) / k.half_size.xy;
+    return all(lessThanEqual(abs(at), vec2(3.0)));
+}
+
 // Whether the plane's point X counts.
 bool stands(Plane k, vec3 X, bool border) {
     vec2 screen = screen_of(X);
     ivec2 q = ivec2(floor(screen));
-    if (X.z <= 0.0 || !in_frame(q)) return border;
+    if (X.z <= 0.0 || !in_frame(q)) return border && (params.radius < UNLIMITED || near_support(k, X));
     return supported(k, X) && hidden(imageLoad(depth_image, q).r, X.z, ROOM);
 }
 
-// Share of weight below a signed angle.
-float share_at(Side s, float t) {
-    float st = sin(t), ct = cos(t);
-    float f = 0.5 * (s.cos_n * st * st + s.sin_n * (t - st * ct));
-    return clamp(((t < 0.0 ? -f : f) + s.below) * s.scale, 0.0, 1.0);
-}
-
-uvec2 behind_planes(Side s, vec3 V, vec3 across, float n, Line right, Line left, vec3 P, float jitter) {
-    uvec2 blocked = uvec2(0u);
+void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, Line right, Line left, vec3 P, float jitter) {
     int cells = int(params.test.x);
     for (int i = 0; i < params.planes; i++) {
         Plane k = planes[i];
@@ -70,13 +69,13 @@ uvec2 behind_planes(Side s, vec3 V, vec3 across, float n, Line right, Line left,
         relevant = relevant && from < to;
         if (!relevant) continue;
         bool border_right = border_allows(k, right), border_left = border_allows(k, left);
+        vec3 sent = h < 0.0 ? k.light.rgb : vec3(0.0); // from the side that the camera sees
         float width = (to - from) / float(cells), c = share_at(s, from);
         for (int j = 0; j < cells; j++) {
             float t = from + (float(j) + jitter) * width, next = share_at(s, from + float(j + 1) * width);
             vec3 X = P + abs(h) / (m * cos(t - t0)) * (cos(t) * V + sin(t) * across);
-            if (stands(k, X, t > 0.0 ? border_right : border_left)) blocked |= sectors(c, next, jitter);
+            if (stands(k, X, t > 0.0 ? border_right : border_left)) block(slots, sectors(c, next, jitter), sent);
             c = next;
         }
     }
-    return blocked;
 }

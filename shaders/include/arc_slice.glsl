@@ -24,6 +24,19 @@ float fast_acos(float x) {
 // Below this sine over the tangent plane nothing counts: rounding and half-float normals live there, and 1e-5 of the weight.
 const float GRAZING = 0.004;
 
+// One side of a slice; n is the angle of the projected normal towards this side.
+Side side_of(vec3 V, vec3 outwards, vec3 N, float n, float inverse_length, float eye_distance) {
+    Side s;
+    s.cos_n = cos(n);
+    s.sin_n = sin(n);
+    s.tangent = s.cos_n * outwards - s.sin_n * V;
+    s.normal = N * inverse_length;
+    s.below = 0.5 * (s.cos_n + (n - 0.5 * PI) * s.sin_n);
+    s.scale = 1.0 / (s.cos_n + n * s.sin_n);
+    s.eye = vec2(-s.sin_n, s.cos_n) * (is_orthographic() ? 1.0 : eye_distance);
+    return s;
+}
+
 // c of the direction to a point; 1 at and below the tangent plane.
 float share(Side s, vec2 w) {
     float l = inversesqrt(max(dot(w, w), 1e-30));
@@ -38,17 +51,8 @@ vec2 in_slice(Side s, vec3 w) { return vec2(dot(w, s.tangent), dot(w, s.normal))
 // Unit vector from the eye through a point, on which the surface hides what is behind it.
 vec2 away(Side s, vec2 w) { return is_orthographic() ? -s.eye : normalize(w - s.eye); }
 
-// ---- 64 sectors, each tested at one direction that is jittered per slice, so that a mask's expected weight is exact
-
-uvec2 sectors_below(int k) {
-    uint low = k >= 32 ? ~0u : ~(~0u << uint(max(k, 0)));
-    uint high = k >= 64 ? ~0u : k <= 32 ? 0u : ~(~0u << uint(k - 32));
-    return uvec2(low, high);
+// c of a signed angle.
+float share_at(Side s, float t) {
+    float st = sin(t), f = 0.5 * (s.cos_n * st * st + s.sin_n * (t - st * cos(t)));
+    return clamp(((t < 0.0 ? -f : f) + s.below) * s.scale, 0.0, 1.0);
 }
-// Sectors whose direction lies in [from, to).
-uvec2 sectors(float from, float to, float jitter) {
-    int a = int(ceil(from * 64.0 - jitter)), b = int(ceil(to * 64.0 - jitter));
-    return sectors_below(b) & ~sectors_below(a);
-}
-float sector_share(uvec2 mask) { return float(bitCount(mask.x) + bitCount(mask.y)) * (1.0 / 64.0); }
-uvec2 mirrored(uvec2 mask) { return bitfieldReverse(mask.yx); }

@@ -1,7 +1,7 @@
 // The march of the older methods, sample by sample: the horizon (all beyond the highest sample is blocked) and the bitmask (each
 // sample blocks from its front to `thickness` behind it on its view ray).
-uvec2 march(Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
-    uvec2 blocked = uvec2(0u);
+Sectors march(Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
+    Sectors slots = all_open();
     float limit = min(line.reach, line.border), lowest = 1.0;
     for (int i = 0; i < params.steps; i++) {
         float at = step_distance(i, step_jitter, limit);
@@ -15,11 +15,11 @@ uvec2 march(Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) 
 #ifdef HORIZON
         if (counts) lowest = min(lowest, front);
 #else
-        if (counts) blocked |= sectors(front, share(s, w + params.thickness * away(s, w)), jitter);
+        if (counts) slots.blocked |= sectors(front, share(s, w + params.thickness * away(s, w)), jitter);
 #endif
     }
 #ifdef HORIZON
-    blocked = sectors(lowest, 1.0, jitter);
+    slots.blocked = sectors(lowest, 1.0, jitter);
 #endif
-    return blocked;
+    return slots;
 }

@@ -35,15 +35,11 @@ Sample ssdo_sample(int i, vec3 P, mat3 tangents, vec2 noise) {
     s.blocked = false;
     s.sender = ivec2(-1);
     s.surface = P;
-    if (!in_front(point)) return s;
-    vec2 screen = screen_of(point);
-    ivec2 q = ivec2(floor(screen));
-    float depth = depth_at(q);
-    if (depth == 0.0) return s; // no surface recorded there, or outside the frame: open
-    float recorded = recorded_depth(q, depth, point, screen);
-    float behind = point.z - recorded;
-    s.blocked = behind > 8.0 * rounding(point) && behind <= params.thickness;
-    s.sender = q;
-    s.surface = position_at(screen, recorded);
+    Recorded r = recorded_at(point);
+    if (!r.exists) return s;
+    float behind = behind_recorded(r, point);
+    s.blocked = behind > 0.0 && behind <= params.thickness;
+    s.sender = r.pixel;
+    s.surface = position_at(r.screen, r.depth);
     return s;
 }

@@ -25,7 +25,9 @@ typedef struct options {
     int samples;       // 0 = the method's default
     double thickness;  // share of the radius; < 0 auto, INFINITY for inf
     double angle_bias; // degrees
-    int blur;          // radius in pixels; 0 none; -1 the method's default
+    double sh_sigma;   // radians
+    bool from_sh;
+    int blur; // radius in pixels; 0 none; -1 the method's default
     double scale, contrast;
 
     const char *bounce; // none, ssdo; NULL = the method's own where it has one

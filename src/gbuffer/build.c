@@ -84,10 +84,10 @@ static bool open_frame(build *b)
     return g->depth && g->normal && b->surface;
 }
 
-static void summarise(build *b)
+static bool summarise(build *b)
 {
     gbuffer *g = b->g;
-    g->extent = gbuffer_extent(g);
+    if (!gbuffer_extent(g, &g->extent, b->e)) return false;
     if (g->off_ray)
         build_note(b, "%zu of %zu positions lay off their pixel's centre and were moved onto it", g->off_ray, g->valid);
     if (g->normals_from_depth && g->valid)
@@ -95,6 +95,7 @@ static void summarise(build *b)
                  "no usable normals in the file: they are rebuilt from depth and show its facets "
                  "(--normal names a channel)");
     if (g->position_is_camera_space) g->camera.has_world = false;
+    return true;
 }
 
 bool gbuffer_build(const exr_file *file, const resolution *r, const gbuffer_options *options, gbuffer *out, log_t *log, error *e)
@@ -106,9 +107,8 @@ bool gbuffer_build(const exr_file *file, const resolution *r, const gbuffer_opti
         measure_normals(&b);
         positions_final(&b);
         normals_make(&b);
-        done = coverage_make(&b) && colours_make(&b);
+        done = coverage_make(&b) && colours_make(&b) && summarise(&b);
     }
-    if (done) summarise(&b);
     free(b.surface);
     free(b.raw);
     free(b.points);

@@ -111,7 +111,7 @@ bool validity_sample(build *b);
 bool choose_camera(build *b);
 
 // measure.c: what Z is, and whether it or P gives the depth; what the normals are.
-void measure_depth(build *b);
+bool measure_depth(build *b);
 void measure_normals(build *b);
 
 // positions.c: planar depth of every pixel.

@@ -54,7 +54,7 @@ bool camera_from_ndc(double m[4][4], box2 data, box2 display, const camera_point
             camera_residual(&c, points, count, &measure, &c.inliers), c.residual = measure;
         else
             measure = off_centre(&c, data, display);
-        if (measure < best) best = measure, *out = c, found = true;
+        if (measure >= 0.0 && measure < best) best = measure, *out = c, found = true;
     }
     if (found && count == 0 && m3_det(out->world_from_camera) < 0.0) {
         out->has_world = false;

@@ -82,6 +82,7 @@ static bool from_positions(build *b, camera *out, error *e)
     if (has_header) {
         *out = header;
     } else if (!from_plane(b, out, &plane_error)) {
+        if (plane_error.code == ERR_MEMORY) *e = plane_error;
         return false;
     }
     *e = (error){0};
@@ -93,7 +94,11 @@ static bool pose_for_lens(build *b, camera *lens)
 {
     camera fitted;
     error e = {0};
-    if (!from_positions(b, &fitted, &e) || fitted.kind != lens->kind) return false;
+    if (!from_positions(b, &fitted, &e)) {
+        if (e.code == ERR_MEMORY) err_set(b->e, e.code, NULL, NULL, "%s", e.message);
+        return false;
+    }
+    if (fitted.kind != lens->kind) return false;
     if (fabs(fitted.fx / lens->fx - 1.0) > 0.005)
         log_warn(b->log, "lens-disagrees",
                  "the positions say a focal length of %.6g pixels, the option says %.6g; the option is used", fitted.fx,
@@ -139,6 +144,8 @@ static bool finish(build *b, camera *c)
     if (b->has_position && c->has_world) {
         b->has_pose = true;
         camera_residual(c, b->points, b->point_count, &c->residual, &c->inliers);
+        if (c->residual < 0.0)
+            return err_set(b->e, ERR_MEMORY, NULL, NULL, "out of memory; try a smaller frame or fewer frames in flight");
     }
     b->far_pixels = fmax(3.0, 10.0 * c->residual);
     if (b->has_pose && c->source != CAMERA_FROM_FLAG && is_camera_space(b, c)) {

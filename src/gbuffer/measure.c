@@ -81,16 +81,15 @@ static void settle_kind(build *b, double *scratch)
     }
 }
 
-void measure_depth(build *b)
+bool measure_depth(build *b)
 {
     gbuffer *g = b->g;
     g->depth_kind = b->r->depth == DEPTH_AUTO ? DEPTH_PLANAR : b->r->depth;
     b->depth_wins = b->has_depth && !b->has_position;
     b->depth_measured = b->depth_wins;
-    if (!b->has_position || b->point_count == 0) return;
-    error ignored = {0};
-    double *scratch = mem_pixels(b->point_count, sizeof *scratch, &ignored);
-    if (!scratch) return;
+    if (!b->has_position || b->point_count == 0) return true;
+    double *scratch = mem_pixels(b->point_count, sizeof *scratch, b->e);
+    if (!scratch) return false;
     b->lateral = median_by(b, scratch, lateral_step, 0.0) < 0.05;
     if (b->has_depth) {
         settle_kind(b, scratch);
@@ -104,6 +103,7 @@ void measure_depth(build *b)
             b->log, "half-position",
             "positions are stored as half floats and there is no finer depth: expect stepped surfaces; render them as float");
     free(scratch);
+    return true;
 }
 
 // One way to read the normals.

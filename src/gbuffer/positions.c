@@ -84,7 +84,7 @@ bool positions_raw(build *b)
     b->raw = mem_pixels((size_t)b->g->width * (size_t)b->g->height, sizeof *b->raw, b->e);
     if (!b->raw) return false;
     settle_origin(b);
-    measure_depth(b);
+    if (!measure_depth(b)) return false;
     build_rows(b, raw_row);
     return true;
 }

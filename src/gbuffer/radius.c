@@ -38,15 +38,16 @@ static double median_component(const vec3 *points, size_t n, int axis, double *s
     return solve_median(scratch, n);
 }
 
-double gbuffer_extent(const gbuffer *g)
+bool gbuffer_extent(const gbuffer *g, double *extent, error *e)
 {
     int step = grid_step(g);
     size_t most = ((size_t)g->width / (size_t)step + 1) * ((size_t)g->height / (size_t)step + 1);
-    error ignored = {0};
-    vec3 *points = mem_pixels(most, sizeof *points, &ignored);
-    double *scratch = mem_pixels(most, sizeof *scratch, &ignored);
-    double extent = 0.0;
+    vec3 *points = mem_pixels(most, sizeof *points, e);
+    double *scratch = mem_pixels(most, sizeof *scratch, e);
+    bool done = false;
+    *extent = 0.0;
     if (!points || !scratch) goto out;
+    done = true;
     size_t n = gather(g, points);
     if (n == 0) goto out;
     double limit = farthest * median_component(points, n, 2, scratch);
@@ -57,11 +58,11 @@ double gbuffer_extent(const gbuffer *g)
     middle.y = median_component(points, n, 1, scratch);
     middle.z = median_component(points, n, 2, scratch);
     for (size_t i = 0; i < n; i++) scratch[i] = v3_length(v3_sub(points[i], middle));
-    extent = solve_median(scratch, n);
+    *extent = solve_median(scratch, n);
 out:
     free(points);
     free(scratch);
-    return extent;
+    return done;
 }
 
 double gbuffer_auto_radius(const gbuffer *g) { return radius_share * g->extent; }

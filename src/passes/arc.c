@@ -1,10 +1,11 @@
 #include "passes/arc.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
-static const float HUGE_LENGTH = 1e30f;
+static const float HUGE_LENGTH = 1e30f, NO_LIMIT = 1e15f;
 
 void arc_grid(int samples, int *slices, int *steps)
 {
@@ -39,9 +40,11 @@ arc_params arc_params_of(const pass_context *c)
     return p;
 }
 
+// ---- planes
+
 // shaders/include/arc_planes.glsl
 typedef struct plane_block {
-    float equation[4], u[4], v[4], half_size[4];
+    float equation[4], u[4], v[4], half_size[4], light[4];
     unsigned cells[PLANE_CELLS / 2]; // two rows each
 } plane_block;
 
@@ -61,31 +64,119 @@ static bool make_planes(pass_context *c, error *e)
         put(blocks[i].equation, p->normal, p->offset);
         put(blocks[i].u, p->axis[0], p->centre[0]);
         put(blocks[i].v, p->axis[1], p->centre[1]);
-        put(blocks[i].half_size, v3(p->half[0], p->half[1], 0), 0);
+        put(blocks[i].half_size, v3(p->half[0], p->half[1], c->planes.room), 0);
         for (int y = 0; y < PLANE_CELLS; y++) blocks[i].cells[y / 2] |= (unsigned)p->cells[y] << 16 * (y & 1);
     }
     c->plane_uniforms = gpu_uniforms_make(sizeof blocks);
     gpu_uniforms_set(c->plane_uniforms, 2, blocks, sizeof blocks);
-    if (getenv("SHOWPLANES"))
-        for (int i = 0; i < c->planes.count; i++)
-            fprintf(stderr, " plane %.3f n(%.2f %.2f %.2f) half %.3g x %.3g;", c->planes.planes[i].share, c->planes.planes[i].normal.x,
-                    c->planes.planes[i].normal.y, c->planes.planes[i].normal.z, c->planes.planes[i].half[0], c->planes.planes[i].half[1]);
     return true;
 }
 
-static bool run_march(pass_context *c, const char *defines, error *e)
+// ---- light
+
+// Takes the suns out of the environment, once a batch.
+static bool make_sunless(pass_context *c, error *e)
 {
-    arc_params params = arc_params_of(c);
-    if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e)) return false;
-    const pass_binding bindings[] = {{2, &c->occlusion, GL_WRITE_ONLY}};
-    return pass_run(c, "arc", defines, &params, sizeof params, bindings, 1, false, e);
+    pass_sunless *l = c->sunless;
+    if (l->ready || !c->env || c->env->white) return true;
+    environment rest;
+    if (!sun_split(c->env, c->threads, &l->suns, &rest, c->log, e)) return false;
+    l->ready = true;
+    if (l->suns.count == 0) return true;
+    log_info(c->log, "environment: %d small bright source%s of its own", l->suns.count, l->suns.count > 1 ? "s, each" : "");
+    bool ok = pass_upload_environment(c->g, &rest, &l->map, e);
+    environment_free(&rest);
+    return ok;
 }
 
-bool pass_gtao(pass_context *c, error *e) { return run_march(c, "HORIZON 1\n", e); }
-bool pass_bitmask(pass_context *c, error *e) { return run_march(c, "BITMASK 1\n", e); }
+static void put_suns(const pass_context *c, arc_params *p)
+{
+    const sun_set *set = &c->sunless->suns;
+    mat3 camera_from_map = m3_transpose(m3_mul(c->env->map_from_world, c->set.world_from_camera));
+    p->suns = set->count;
+    for (int i = 0; i < set->count; i++) {
+        const sun *s = &set->suns[i];
+        put(p->sun_direction[i], m3_apply(camera_from_map, s->direction), 0);
+        put(p->sun_light[i], v3_scale(v3(s->flux[0], s->flux[1], s->flux[2]), 1.0 / M_PI), 0);
+    }
+}
+
+// ---- the passes
+
+static const char *with_planes(const pass_context *c, const char *defines, char *buf, size_t size)
+{
+    snprintf(buf, size, "%s%s", defines, c->planes.count ? "PLANES 1\n" : "");
+    return buf;
+}
+
+static bool run_occlusion(pass_context *c, const char *defines, error *e)
+{
+    arc_params params = arc_params_of(c);
+    char buf[128];
+    if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e)) return false;
+    const pass_binding bindings[] = {{2, &c->occlusion, GL_WRITE_ONLY}};
+    return pass_run(c, "arc", with_planes(c, defines, buf, sizeof buf), &params, sizeof params, bindings, 1, false, e);
+}
+
+// Light comes from any distance, so its march has no radius.
+static bool run_light(pass_context *c, error *e)
+{
+    arc_params params = arc_params_of(c);
+    char buf[128];
+    params.radius = NO_LIMIT;
+    if (!make_sunless(c, e)) return false;
+    put_suns(c, &params);
+    if (!pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e)) return false;
+    if (c->want_visibility && !pass_make(c, &c->visibility, GL_R32F, 1.0f, e)) return false;
+    gpu_image whole = c->environment;
+    if (c->sunless->map.id) c->environment = c->sunless->map;
+    const pass_binding bindings[] = {{2, &c->visibility, GL_WRITE_ONLY}, {3, &c->radiance, GL_WRITE_ONLY}};
+    const char *defines = c->want_visibility ? "RUNS 1\nLIGHT 1\nVISIBILITY 1\n" : "RUNS 1\nLIGHT 1\n";
+    bool ok = pass_run(c, "arc", with_planes(c, defines, buf, sizeof buf), &params, sizeof params, bindings, 2, false, e);
+    c->environment = whole;
+    return ok;
+}
+
+bool pass_gtao(pass_context *c, error *e) { return run_occlusion(c, "HORIZON 1\n", e); }
+bool pass_bitmask(pass_context *c, error *e) { return run_occlusion(c, "BITMASK 1\n", e); }
 
 bool pass_arc(pass_context *c, error *e)
 {
+    if (!make_planes(c, e) || !run_occlusion(c, "RUNS 1\n", e)) return false;
+    return !(c->want_radiance || c->want_visibility) || run_light(c, e);
+}
+
+// What the planes send: one work group that reads the whole frame's grid.
+static bool light_planes(pass_context *c, const arc_params *params, const gpu_image *sender, const gpu_image *albedo, error *e)
+{
+    if (c->planes.count == 0) return true;
+    GLuint program = gpu_program(c->g, "plane_light.comp", NULL, e);
+    if (!program) return false;
+    glUseProgram(program);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, c->frame_uniforms);
+    gpu_uniforms_set(c->params_uniforms, 1, params, sizeof *params);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, c->plane_uniforms);
+    gpu_bind_image(0, &c->depth, GL_READ_ONLY);
+    gpu_bind_image(1, &c->normal, GL_READ_ONLY);
+    gpu_bind_image(4, sender, GL_READ_ONLY);
+    gpu_bind_image(5, albedo, GL_READ_ONLY);
+    glDispatchCompute(1, 1, 1);
+    glMemoryBarrier(GL_UNIFORM_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 2, c->plane_uniforms);
+    return true;
+}
+
+bool pass_arc_bounce(pass_context *c, error *e)
+{
+    // A picture the renderer lit is what surfaces send; our own radiance still needs their albedo.
+    bool exitant = !c->set.relight;
+    const gpu_image *sender = exitant ? &c->beauty : &c->radiance, *albedo = exitant ? &c->beauty : &c->albedo;
+    char buf[128];
     if (!make_planes(c, e)) return false;
-    return run_march(c, c->planes.count ? "RUNS 1\nPLANES 1\n" : "RUNS 1\n", e);
+    arc_params params = arc_params_of(c);
+    params.radius = NO_LIMIT;
+    params.exitant = exitant;
+    if (!light_planes(c, &params, sender, albedo, e) || !pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e)) return false;
+    const pass_binding bindings[] = {{3, &c->indirect, GL_WRITE_ONLY}, {4, sender, GL_READ_ONLY}, {5, albedo, GL_READ_ONLY}};
+    return pass_run(c, "arc", with_planes(c, "RUNS 1\nBOUNCE 1\n", buf, sizeof buf), &params, sizeof params, bindings, 3, false, e);
 }

@@ -9,6 +9,8 @@ typedef struct arc_params {
     int fixed_thickness;
     int slices, steps, seed, planes;
     float spacing, tolerance, level, strength;
+    int suns, exitant, unused[2];
+    float sun_direction[4][4], sun_light[4][4];
     float test[4];
 } arc_params;
 

@@ -56,6 +56,20 @@ const method methods[] = {
         .run = pass_hbao,
     },
     {
+        .name = "s3ho",
+        .summary = "spherical harmonics of the cosine-weighted visibility (Herholz et al. 2011), relit by a dot product",
+        .weighting = "cosine",
+        .reach = "points up to the radius",
+        .blind = "sharp shadows: nine coefficients hold soft ones only; the rest as ssdo",
+        .samples = 32,
+        .blur = 2,
+        .thickness = 2.0,
+        .fills_radiance = true,
+        .fills_sh = true,
+        .bounce = NULL,
+        .run = pass_s3ho,
+    },
+    {
         .name = "arc",
         .summary = "arcs blocked by runs of connected surface in slices around the view vector",
         .weighting = "cosine",
@@ -64,8 +78,8 @@ const method methods[] = {
         .samples = 256,
         .blur = 2,
         .thickness = 0.3,
-        .fills_radiance = false,
-        .bounce = NULL,
+        .fills_radiance = true,
+        .bounce = "arc",
         .run = pass_arc,
     },
     {
@@ -104,4 +118,4 @@ const method *method_find(const char *name)
     return NULL;
 }
 
-const char *method_names(void) { return "ssdo, alchemy, hemisphere, hbao, arc, gtao, bitmask"; }
+const char *method_names(void) { return "ssdo, alchemy, hemisphere, hbao, s3ho, arc, gtao, bitmask"; }

@@ -86,7 +86,8 @@ bool pass_upload_environment(gpu *g, const environment *env, gpu_image *out, err
 bool pass_begin(pass_context *c, gpu *g, const gbuffer *gb, const environment *env, const pass_settings *set, bool timing,
                 log_t *log, error *e)
 {
-    *c = (pass_context){.g = g, .log = log, .timing = timing, .width = gb->width, .height = gb->height, .set = *set, .gb = gb};
+    *c = (pass_context){
+        .g = g, .log = log, .timing = timing, .width = gb->width, .height = gb->height, .set = *set, .gb = gb, .env = env};
     double wall = now(CLOCK_MONOTONIC), cpu = now(CLOCK_PROCESS_CPUTIME_ID);
     bool ok = upload_all(c, gb, e) && gpu_tiles_make(&c->tiles, c->width, c->height, GPU_TILE, gb->depth, gb->coverage, e) &&
               gpu_finish(g, "the upload", e);
@@ -98,16 +99,17 @@ bool pass_begin(pass_context *c, gpu *g, const gbuffer *gb, const environment *e
     fill_block(&block, gb, env, set->world_from_camera);
     c->frame_uniforms = gpu_uniforms_make(sizeof block);
     gpu_uniforms_set(c->frame_uniforms, 0, &block, sizeof block);
-    c->params_uniforms = gpu_uniforms_make(256);
+    c->params_uniforms = gpu_uniforms_make(512);
     c->timings[c->timing_count++] = (pass_timing){"upload", now(CLOCK_MONOTONIC) - wall, now(CLOCK_PROCESS_CPUTIME_ID) - cpu, 0};
     return true;
 }
 
 void pass_end(pass_context *c)
 {
-    gpu_image *images[] = {&c->depth,          &c->normal,        &c->albedo,    &c->beauty,     &c->material, &c->emission,
-                           &c->diffuse_direct, &c->coverage,      &c->occlusion, &c->visibility, &c->radiance, &c->indirect,
-                           &c->specular,       &c->diffuse_share, &c->composite, &c->diffuse,    &c->depthmask};
+    gpu_image *images[] = {&c->depth,    &c->normal,         &c->albedo,   &c->beauty,        &c->material,
+                           &c->emission, &c->diffuse_direct, &c->coverage, &c->occlusion,     &c->visibility,
+                           &c->radiance, &c->indirect,       &c->specular, &c->diffuse_share, &c->composite,
+                           &c->diffuse,  &c->depthmask,      &c->sh[0],    &c->sh[1],         &c->sh[2]};
     for (size_t i = 0; i < sizeof images / sizeof *images; i++) gpu_image_free(images[i]);
     gpu_uniforms_free(c->frame_uniforms);
     gpu_uniforms_free(c->params_uniforms);

@@ -10,6 +10,7 @@
 #include "gbuffer/gbuffer.h"
 #include "gpu/gpu.h"
 #include "light/environment.h"
+#include "light/sun.h"
 #include "passes/planes.h"
 
 enum { PASS_MAX_TIMINGS = 48, PASS_MAX_UPLOADS = 12 };
@@ -33,6 +34,7 @@ typedef struct pass_settings {
     bool thickness_fixed; // asked for by the user: no method may find a better one
     int samples;
     int blur;          // pixels, 0 none
+    double sh_sigma;   // s3ho: radians of the low-pass
     double angle_bias; // hbao: degrees above the tangent where occlusion begins
     double scale, contrast;
     double env_level; // < 0: by solid angle
@@ -51,6 +53,13 @@ typedef struct pass_settings {
     bool bounce_in_composite;
 } pass_settings;
 
+// The environment without its suns, made by the first frame that needs it and kept for the batch.
+typedef struct pass_sunless {
+    bool ready;
+    sun_set suns;
+    gpu_image map; // id 0: there are no suns, the whole map serves
+} pass_sunless;
+
 typedef struct pass_context {
     gpu *g;
     log_t *log;
@@ -64,9 +73,14 @@ typedef struct pass_context {
     gpu_image depth, normal, albedo, beauty, material, emission, diffuse_direct, coverage, environment;
     // Layers; id 0 until their pass has run.
     gpu_image occlusion, visibility, radiance, indirect, specular, diffuse_share, composite, diffuse, depthmask;
+    gpu_image sh[3]; // SH vector of cosine-weighted visibility, coefficients 0 1 2 | 3 4 5 | 6 7 8
 
-    const gbuffer *gb; // borrowed: for what is found on the CPU
-    plane_set planes;  // found by the pass that uses them
+    const float *stored_sh[3]; // --from-sh: 3 a pixel, borrowed; NULL: s3ho measures
+    const environment *env;    // borrowed; NULL without light
+    const gbuffer *gb;         // borrowed: for what is found on the CPU
+    pass_sunless *sunless;     // borrowed, lives as long as the batch
+    int threads;
+    plane_set planes; // found by the pass that uses them
 
     GLuint frame_uniforms, params_uniforms, plane_uniforms;
     gpu_tiles tiles;
@@ -101,10 +115,12 @@ bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, er
 // ------------------------------------------------------------------------------------
 bool pass_alchemy(pass_context *c, error *e);     // -> occlusion (1 - S, before its bounds)
 bool pass_arc(pass_context *c, error *e);         // -> occlusion, radiance, indirect
+bool pass_arc_bounce(pass_context *c, error *e);  // radiance or beauty, albedo -> indirect
 bool pass_gtao(pass_context *c, error *e);        // -> occlusion
 bool pass_bitmask(pass_context *c, error *e);     // -> occlusion
 bool pass_hemisphere(pass_context *c, error *e);  // -> occlusion
 bool pass_hbao(pass_context *c, error *e);        // -> occlusion
+bool pass_s3ho(pass_context *c, error *e);        // -> sh, occlusion, radiance, visibility
 bool pass_ssdo(pass_context *c, error *e);        // -> occlusion, radiance, visibility
 bool pass_ssdo_bounce(pass_context *c, error *e); // radiance or beauty, albedo -> indirect
 bool pass_blur(pass_context *c, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e); // in place; NULL = none

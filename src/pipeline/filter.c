@@ -7,6 +7,13 @@
 
 #include "base/mem.h"
 
+// The bounce that --bounce names, else the method's own.
+static bool (*bounce_of(const plan *p))(pass_context *, error *)
+{
+    const char *name = p->bounce_name ? p->bounce_name : p->method->bounce;
+    return name && strcmp(name, "arc") == 0 ? pass_arc_bounce : pass_ssdo_bounce;
+}
+
 static bool run_passes(pass_context *c, const plan *p, error *e)
 {
     if (!p->method->run(c, e)) return false;
@@ -14,7 +21,7 @@ static bool run_passes(pass_context *c, const plan *p, error *e)
     if (p->look && !pass_look(c, &c->occlusion, e)) return false;
     if (p->look && c->visibility.id && !pass_look(c, &c->visibility, e)) return false;
     if (p->irradiance && !pass_irradiance(c, e)) return false;
-    if (p->bounce && !pass_ssdo_bounce(c, e)) return false;
+    if (p->bounce && !bounce_of(p)(c, e)) return false;
     if (p->bounce && p->blur && !pass_blur(c, NULL, NULL, &c->indirect, e)) return false;
     if (p->edges && c->coverage.id && !pass_edges(c, e)) return false;
     if (p->specular && !pass_specular(c, e)) return false;
@@ -59,6 +66,9 @@ static bool read_layers(const pass_context *c, frame_result *r, error *e)
         [LAYER_SPECULAR] = &c->specular,
         [LAYER_DIFFUSE] = &c->diffuse,
         [LAYER_DEPTHMASK] = &c->depthmask,
+        [LAYER_SH_0] = &c->sh[0],
+        [LAYER_SH_1] = &c->sh[1],
+        [LAYER_SH_2] = &c->sh[2],
     };
     for (int i = 0; i < LAYER_COUNT; i++)
         if (r->plan.layers & 1u << i && !read_back(images[i], (layer_id)i, r, e)) return false;
@@ -91,8 +101,11 @@ bool filter_frame(job *j, frame_result *r, error *e)
     if (!needs_coverage(r)) gb.coverage = NULL;
     if (!pass_begin(&c, &j->g, &gb, env, &r->set, j->o->report != NULL, j->log, e)) return false;
     c.environment = j->env_image;
+    c.sunless = &j->sunless;
+    c.threads = j->threads;
     c.want_radiance = r->plan.want_radiance;
     c.want_visibility = r->plan.want_visibility && r->plan.method->fills_radiance;
+    for (int k = 0; k < 3; k++) c.stored_sh[k] = r->stored_sh[k];
     c.want_diffuse = r->plan.layers & 1u << LAYER_DIFFUSE;
     bool ok = run_passes(&c, &r->plan, e) && gpu_finish(&j->g, "the passes", e);
     r->wall_ms[STAGE_PASSES] = milliseconds(CLOCK_MONOTONIC) - wall;

@@ -11,6 +11,7 @@
 #include "gbuffer/conventions.h"
 #include "pipeline/filter.h"
 #include "pipeline/output.h"
+#include "pipeline/stored.h"
 
 typedef struct stopwatch {
     double wall, cpu;
@@ -41,6 +42,7 @@ bool job_open(job *j, const options *o, log_t *log, error *e)
 void job_close(job *j)
 {
     gpu_image_free(&j->env_image);
+    gpu_image_free(&j->sunless.map);
     if (j->env_loaded) environment_free(&j->env);
     gpu_close(&j->g);
 }
@@ -76,11 +78,13 @@ bool frame_read(const job *j, const char *input, frame_result *r, error *e)
         !plan_make(j->o, r->file, &r->resolution, &r->plan, j->log, e) || !output_check_names(j->o, r->file, &r->plan, e))
         return false;
     want_channels(j, r->file, &r->resolution, &r->plan);
+    if (r->plan.from_sh && !stored_sh_want(j->o, r->file, e)) return false;
     if (!exr_file_load(r->file, j->threads, e)) return false;
     lap(r, STAGE_READ, &t);
     gbuffer_options g = {
         .need = r->plan.need, .camera_file = j->o->camera_file, .fov = j->o->fov, .ortho = j->o->ortho, .threads = j->threads};
-    bool ok = gbuffer_build(r->file, &r->resolution, &g, &r->gb, j->log, e);
+    bool ok = gbuffer_build(r->file, &r->resolution, &g, &r->gb, j->log, e) &&
+              (!r->plan.from_sh || stored_sh_load(j->o, r->file, &r->gb, r->stored_sh, e));
     lap(r, STAGE_RESOLVE, &t);
     return ok;
 }
@@ -177,6 +181,7 @@ static pass_settings settings_of(const job *j, const frame_result *r)
         .thickness = share * radius,
         .samples = o->samples > 0 ? o->samples : m->samples,
         .angle_bias = o->angle_bias,
+        .sh_sigma = o->sh_sigma,
         .blur = o->blur < 0 ? m->blur : o->blur,
         .scale = o->scale,
         .contrast = o->contrast,
@@ -235,6 +240,7 @@ bool frame_measure_radius(const job *j, const char *input, double *radius, error
 void frame_free(frame_result *r)
 {
     for (int i = 0; i < LAYER_COUNT; i++) free(r->layers[i]);
+    for (int k = 0; k < 3; k++) free(r->stored_sh[k]);
     gbuffer_free(&r->gb);
     exr_file_close(r->file);
     *r = (frame_result){0};

@@ -19,6 +19,7 @@ typedef struct job {
     bool env_loaded; // the environment needs the first frame's renderer for its default up axis
     environment env;
     gpu_image env_image;
+    pass_sunless sunless;
     double shot_radius; // automatic radius of the whole sequence; 0: each frame has its own
 } job;
 
@@ -39,6 +40,7 @@ typedef struct frame_result {
     int tile_size, tiles, tiles_occupied; // tiles without a surface are not dispatched (but for the composite of a background)
     size_t clamped;                       // samples of ours that a half could not hold
     float *layers[LAYER_COUNT];           // width * height * channels, interleaved; NULL where not made
+    float *stored_sh[3];                  // --from-sh: what the input brought along, else NULL
     bool second_part;
 } frame_result;
 

@@ -15,6 +15,9 @@ typedef enum layer_id {
     LAYER_SPECULAR,
     LAYER_DIFFUSE,
     LAYER_DEPTHMASK,
+    LAYER_SH_0, // LAYER_SH_0 + k
+    LAYER_SH_1,
+    LAYER_SH_2,
     LAYER_COUNT
 } layer_id;
 

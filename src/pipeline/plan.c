@@ -51,6 +51,8 @@ static bool drop_impossible(plan *p, const options *o, const exr_file *file, con
           cannot(p, o, file, LAYER_COMPOSITE, "albedo", no_albedo, log, e) &&
           cannot(p, o, file, LAYER_DIFFUSE, "albedo", no_albedo, log, e)))
         return false;
+    for (int l = LAYER_SH_0; l <= LAYER_SH_2; l++)
+        if (!p->method->fills_sh && !cannot(p, o, file, (layer_id)l, NULL, "only --method s3ho makes it", log, e)) return false;
     if (!in->roughness &&
         !cannot(p, o, file, LAYER_SPECULAR, "roughness", "no roughness channel was found; name it with --roughness", log, e))
         return false;
@@ -80,10 +82,10 @@ static bool bounce_belongs(const options *o, const inputs *in, bool relight, log
 
 static void list_steps(plan *p, const options *o, const inputs *in)
 {
-    step(p, p->method->name, true, "occlusion is always made", "");
+    step(p, p->method->name, true, p->from_sh ? "its SH layers are read from the file" : "occlusion is always made", "");
     step(p, "irradiance", p->irradiance, "the method gives no direction: SH irradiance x occlusion",
          p->method->fills_radiance ? "the method makes radiance itself" : "no layer needs light");
-    step(p, "blur", p->blur, "noise of the sample pattern", "--blur none");
+    step(p, "blur", p->blur, "noise of the sample pattern", p->method->fills_sh ? "the method filters itself" : "--blur none");
     step(p, "look", p->look, "scale, contrast and the bounds of a scalar method", "scale and contrast are 1");
     step(p, "bounce", p->bounce, "indirect light", !in->albedo && p->relight ? "no albedo" : "no layer needs it");
     step(p, "edges", p->edges, "partly covered pixels", "no layer but data of whole pixels");
@@ -98,7 +100,8 @@ static void list_steps(plan *p, const options *o, const inputs *in)
 
 bool plan_make(const options *o, const exr_file *file, const resolution *r, plan *p, log_t *log, error *e)
 {
-    *p = (plan){.method = method_find(o->method ? o->method : methods[METHOD_DEFAULT].name)};
+    const char *name = o->from_sh ? "s3ho" : o->method ? o->method : methods[METHOD_DEFAULT].name;
+    *p = (plan){.method = method_find(name), .from_sh = o->from_sh};
     if (!p->method)
         return err_set(e, ERR_USAGE, NULL, NULL, "--method: there is no method '%s'; the methods are %s", o->method,
                        method_names());
@@ -110,6 +113,7 @@ bool plan_make(const options *o, const exr_file *file, const resolution *r, plan
     p->composite = asked(p, LAYER_COMPOSITE) || asked(p, LAYER_DIFFUSE);
     p->visibility_mode = o->mode == MODE_VISIBILITY;
     p->bounce_in_composite = p->composite && bounce_of(p, o) && bounce_belongs(o, &in, p->relight, log);
+    p->bounce_name = bounce_of(p, o);
     p->bounce = asked(p, LAYER_INDIRECT) || p->bounce_in_composite;
     bool relit = p->composite && p->relight;
     bool light = asked(p, LAYER_RADIANCE) || (relit && !p->visibility_mode) || (p->bounce && p->relight);
@@ -118,7 +122,7 @@ bool plan_make(const options *o, const exr_file *file, const resolution *r, plan
     p->irradiance = light && !p->method->fills_radiance;
     p->specular = in.roughness && in.env && (relit || asked(p, LAYER_SPECULAR));
     p->light = light || p->want_visibility || p->specular;
-    p->blur = (o->blur < 0 ? p->method->blur : o->blur) > 0;
+    p->blur = (o->blur < 0 ? p->method->blur : o->blur) > 0 && !p->method->fills_sh;
     p->look = o->contrast != 1.0 || o->scale != 1.0 || !p->method->fills_radiance;
     p->edges = true;
     p->depthmask = asked(p, LAYER_DEPTHMASK) || (p->composite && o->depthmask_strength > 0.0);

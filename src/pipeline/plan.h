@@ -26,6 +26,8 @@ typedef struct plan {
     bool want_radiance, want_visibility;
     bool irradiance, blur, look, bounce, edges, specular, depthmask, composite;
     bool bounce_in_composite;
+    bool from_sh;            // the method's SH vector is read from the file
+    const char *bounce_name; // NULL: the method's own
     plan_step steps[PLAN_STEPS];
     int step_count;
 } plan;

@@ -25,7 +25,7 @@ static bool parse(int argc, char **argv, arguments *a)
         {"samples", 1, NULL, 's'}, {"out", 1, NULL, 'o'},     {"cache", 1, NULL, 'c'},         {"rounds", 1, NULL, 'r'},
         {"title", 1, NULL, 't'},   {"command", 1, NULL, 'm'}, {"rendered-only", 0, NULL, 'R'}, {"generated-only", 0, NULL, 'G'},
         {NULL, 0, NULL, 0}};
-    *a = (arguments){"samples", "build/bench", "build/bench-cache", "Bench", "make bench", 5, true, true};
+    *a = (arguments){"samples", "build/bench", "build/bench-cache", "Bench", "make bench", 3, true, true};
     for (int c; (c = getopt_long(argc, argv, "", table, NULL)) != -1;) {
         if (c == 's') a->samples = optarg;
         if (c == 'o') a->out = optarg;
@@ -72,56 +72,90 @@ static int open_scenes(const arguments *a, rig *r, bench_scene *list, error *e)
     return more ? n + more : 0;
 }
 
-// Occlusion alone is another program than all layers; both are compiled before anything is timed.
-static bool measure_all(rig *r, bench_results *b, bench_cell *cells, const char *cache, double start, error *e)
+static bool run_once(rig *r, const bench_scene *s, const bench_row *row, unsigned layers, bench_time *direct, bench_time *all,
+                     error *e)
 {
-    for (int s = 0; s < b->scene_count; s++) {
-        char text[128];
-        for (int i = 0; i < b->row_count; i++) {
-            frame_result f;
-            if (!bench_measure(r, &b->scenes[s], &b->rows[i], cache, &cells[i * b->scene_count + s], e)) return false;
-            if (b->rows[i].kind != ROW_METHOD || s > 0) continue;
-            if (!bench_run(r, &b->scenes[s], &b->rows[i], 1 << LAYER_OCCLUSION, &f, NULL, e)) return false;
-            rig_free_result(&f);
-        }
-        snprintf(text, sizeof text, "errors of %s", b->scenes[s].s.name);
-        say(start, text);
+    frame_result f;
+    if (!bench_run(r, s, row, layers, &f, direct, all, e)) return false;
+    rig_free_result(&f);
+    return true;
+}
+
+// Compiles what the rows need on this scene, with the fewest samples.
+static bool warm_up(rig *r, const bench_results *b, const bench_scene *s, error *e)
+{
+    for (int i = 0; i < b->row_count; i++) {
+        bench_row row = b->rows[i];
+        if (row.kind != ROW_METHOD || (row.samples != 8 && !row.standard)) continue;
+        row.samples = 8;
+        if (!run_once(r, s, &row, bench_layers(&row), NULL, NULL, e) ||
+            !run_once(r, s, &row, 1 << LAYER_OCCLUSION, NULL, NULL, e))
+            return false;
     }
     return true;
 }
 
-static bool time_row(rig *r, const bench_scene *s, const bench_row *row, bench_cell *cell, int round, error *e)
+// All layers in one run tell the time of occlusion alone where light is but a multiplication.
+static bool tells_both(const bench_row *row) { return !row->m->fills_radiance && !(bench_layers(row) & 1u << LAYER_INDIRECT); }
+
+// The first round also measures the errors. The long rows are timed only there.
+static bool do_row(rig *r, const bench_scene *s, const bench_row *row, bench_cell *cell, int round, const char *cache, error *e)
 {
-    frame_result f;
-    if (row->kind != ROW_METHOD) return true;
-    if (!bench_run(r, s, row, 1 << LAYER_OCCLUSION, &f, &cell->direct[round], e)) return false;
-    rig_free_result(&f);
-    if (!bench_run(r, s, row, bench_layers(row), &f, &cell->all[round], e)) return false;
-    rig_free_result(&f);
-    return true;
+    if (round == 0) {
+        if (!bench_measure(r, s, row, cache, cell, e)) return false;
+        if (row->kind == ROW_METHOD) cell->rounds = 1;
+        return row->kind != ROW_METHOD || s->generated || tells_both(row) ||
+               run_once(r, s, row, 1 << LAYER_OCCLUSION, &cell->direct[0], NULL, e);
+    }
+    if (row->kind != ROW_METHOD || row->samples > BENCH_LONG) return true;
+    int i = cell->rounds++;
+    cell->round[i] = round;
+    return run_once(r, s, row, bench_layers(row), &cell->direct[i], &cell->all[i], e) &&
+           (tells_both(row) || run_once(r, s, row, 1 << LAYER_OCCLUSION, &cell->direct[i], NULL, e));
 }
 
-static bool time_round(rig *r, bench_results *b, bench_cell *cells, int round, error *e)
+static void measure_yardstick(const yardstick *y, bench_time *sum)
 {
-    for (int s = 0; s < b->scene_count; s++) {
-        enum { REPEATS = 3 };
-        yardstick y;
-        bench_time sum[2] = {0};
-        if (!yardstick_open(&y, b->scenes[s].gb.width, b->scenes[s].gb.height, e)) return false;
-        for (int i = 0; i < REPEATS; i++) {
-            bench_time t = yardstick_run(&y);
-            sum[0].cpu += t.cpu / (2 * REPEATS), sum[0].wall += t.wall / (2 * REPEATS);
+    enum { REPEATS = 3 };
+    for (int i = 0; i < REPEATS; i++) {
+        bench_time t = yardstick_run(y);
+        sum->cpu += t.cpu / (2 * REPEATS), sum->wall += t.wall / (2 * REPEATS);
+    }
+}
+
+// Half of the yardsticks before the rows and half after: the machine may have changed meanwhile.
+static bool do_scene(rig *r, bench_results *b, bench_cell *cells, int s, int round, const char *cache, error *e)
+{
+    yardstick y;
+    const bench_scene *scn = &b->scenes[s];
+    if (round == 0 && !warm_up(r, b, scn, e)) return false;
+    if (!yardstick_open(&y, scn->gb.width, scn->gb.height, e)) return false;
+    measure_yardstick(&y, &b->yard[s][round]);
+    bool ok = true;
+    for (int i = 0; ok && i < b->row_count; i++)
+        ok = do_row(r, scn, &b->rows[i], &cells[i * b->scene_count + s], round, cache, e);
+    measure_yardstick(&y, &b->yard[s][round]);
+    yardstick_close(&y);
+    return ok;
+}
+
+// References are made before anything is timed: they would only heat the machine.
+static bool prepare_references(const bench_results *b, const char *cache, error *e)
+{
+    for (int s = 0; s < b->scene_count; s++)
+        for (int i = 0; i < b->row_count; i++) free(bench_reference(&b->scenes[s], &b->rows[i], cache, e));
+    return e->code == ERR_NONE;
+}
+
+static bool do_rounds(rig *r, bench_results *b, bench_cell *cells, const char *cache, double start, error *e)
+{
+    for (int round = 0; round < b->rounds; round++) {
+        for (int s = 0; s < (round == 0 ? b->scene_count : b->timed_count); s++) {
+            char text[128];
+            if (!do_scene(r, b, cells, s, round, cache, e)) return false;
+            snprintf(text, sizeof text, "round %d: %s", round + 1, b->scenes[s].s.name);
+            say(start, text);
         }
-        bool ok = true;
-        for (int i = 0; ok && i < b->row_count; i++)
-            ok = time_row(r, &b->scenes[s], &b->rows[i], &cells[i * b->scene_count + s], round, e);
-        for (int i = 0; i < REPEATS; i++) { // the machine may have changed meanwhile: half before, half after
-            bench_time t = yardstick_run(&y);
-            sum[1].cpu += t.cpu / (2 * REPEATS), sum[1].wall += t.wall / (2 * REPEATS);
-        }
-        b->yard[s][round] = (bench_time){sum[0].cpu + sum[1].cpu, sum[0].wall + sum[1].wall};
-        yardstick_close(&y);
-        if (!ok) return false;
     }
     return true;
 }
@@ -147,11 +181,8 @@ static bool measure_empty(rig *r, const bench_scene *s, double *ratio, error *e)
     bool ok = true;
     for (int i = 0; ok && i < ROUNDS; i++) {
         bench_time full = {0}, part = {0};
-        frame_result f;
-        ok = bench_run(r, s, &row, bench_layers(&row), &f, &full, e);
-        if (ok) rig_free_result(&f);
-        ok = ok && bench_run(r, &empty, &row, bench_layers(&row), &f, &part, e);
-        if (ok) rig_free_result(&f);
+        ok = run_once(r, s, &row, bench_layers(&row), NULL, &full, e) &&
+             run_once(r, &empty, &row, bench_layers(&row), NULL, &part, e);
         ratios[i] = part.cpu / full.cpu;
     }
     if (ok) *ratio = bench_median(ratios, ROUNDS);
@@ -170,7 +201,8 @@ static const bench_scene *fullest(const bench_scene *list, int n)
     return best;
 }
 
-static int fit_count(const bench_scene *list, int n)
+// The rendered scenes come first; where there are none, the generated ones stand in.
+static int rendered_count(const bench_scene *list, int n)
 {
     int rendered = 0;
     while (rendered < n && !list[rendered].generated) rendered++;
@@ -190,19 +222,17 @@ static bool bench(const arguments *a, error *e)
     if (!rig_open(&r, NULL, e)) return false;
     b.renderer = r.job.g.renderer;
     b.scene_count = open_scenes(a, &r, scenes, e);
+    b.timed_count = rendered_count(scenes, b.scene_count);
     say(start, "scenes and their truth");
     bench_cell *cells = NULL;
-    bool ok = b.scene_count > 0 &&
-              bench_fit_alchemy(&r, scenes, fit_count(scenes, b.scene_count), &b.alchemy_scale, &b.alchemy_contrast, e);
+    bool ok = b.scene_count > 0 && bench_fit_alchemy(&r, scenes, b.timed_count, &b.alchemy_scale, &b.alchemy_contrast, e);
     if (ok) {
         b.row_count = bench_rows(rows, BENCH_ROWS, b.alchemy_scale, b.alchemy_contrast);
         b.cells = cells = mem_zero((size_t)b.row_count * (size_t)b.scene_count, sizeof *cells, e);
-        ok = cells && measure_all(&r, &b, cells, a->cache, start, e);
+        ok = cells && prepare_references(&b, a->cache, e);
+        say(start, "references");
     }
-    for (int i = 0; ok && i < a->rounds; i++) {
-        ok = time_round(&r, &b, cells, i, e);
-        say(start, "a round of times");
-    }
+    ok = ok && do_rounds(&r, &b, cells, a->cache, start, e);
     ok = ok && measure_empty(&r, fullest(scenes, b.scene_count), &b.empty_ratio, e);
     b.seconds = seconds() - start;
     ok = ok && bench_write_csv(&b, a->out, e) && bench_write_markdown(&b, a->out, e) && bench_write_plot(&b, a->out, e);

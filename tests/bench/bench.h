@@ -13,7 +13,7 @@
 #include "scene_picture.h"
 #include "truth.h"
 
-enum { BENCH_ROUNDS = 9, BENCH_SCENES = 24, BENCH_ROWS = 160, BENCH_PIXELS = 4096 };
+enum { BENCH_ROUNDS = 9, BENCH_SCENES = 24, BENCH_ROWS = 160, BENCH_PIXELS = 4096, BENCH_LONG = 256 };
 
 // ---- scenes (scenes.c, generated.c)
 
@@ -75,14 +75,17 @@ typedef struct bench_cell { // a row on a scene
     score occlusion, radiance, indirect;
     bool has_occlusion, has_radiance, has_indirect, has_a;
     double a_rmse, a_bias;
-    bench_time direct[BENCH_ROUNDS], all[BENCH_ROUNDS]; // occlusion alone; every layer the method makes
+    int rounds, round[BENCH_ROUNDS];                    // in which it was timed
+    bench_time direct[BENCH_ROUNDS], all[BENCH_ROUNDS]; // occlusion alone; every layer the method makes (0: not timed)
 } bench_cell;
 
 pass_settings bench_settings(const bench_row *row, const bench_scene *b);
 // The layers a row can make.
 unsigned bench_layers(const bench_row *row);
-bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned layers, frame_result *out, bench_time *t, error *e);
-// All error figures of a cell; this run also compiles what it needs.
+// `all`: time of everything; `direct`: of all but the multiplication that makes radiance of a scalar. Both may be NULL.
+bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned layers, frame_result *out, bench_time *direct,
+               bench_time *all, error *e);
+// All error figures of a cell, and the times of that one run.
 bool bench_measure(rig *r, const bench_scene *b, const bench_row *row, const char *cache, bench_cell *cell, error *e);
 
 // Reference A of a row on a scene at its pixels, from the cache if it is there (references.c). Returns NULL without an error for
@@ -113,7 +116,7 @@ void yardstick_close(yardstick *y);
 typedef struct bench_results {
     const char *title, *command, *renderer;
     const bench_scene *scenes;
-    int scene_count;
+    int scene_count, timed_count; // the first ones are timed
     const bench_row *rows;
     int row_count, rounds;
     const bench_cell *cells;                     // [row * scene_count + scene]

@@ -161,6 +161,9 @@ static bool generate(bench_scene *b, const char *name, const scene *s, bool orth
     b->s.depth = mem_pixels(n, sizeof(float), e);
     if (!b->s.depth) return false;
     memcpy(b->s.depth, b->gb.depth, n * sizeof(float));
+    b->s.scored = mem_zero(n, sizeof *b->s.scored, e);
+    if (!b->s.scored) return false;
+    for (size_t i = 0; i < n; i++) b->s.scored[i] = b->gb.depth[i] > 0.0f;
     bool meshes = s->shape_count > 0 && s->shapes[s->shape_count - 1].kind == SHAPE_MESH;
     embree *m = meshes ? embree_open(s, e) : NULL;
     truth_job work = {b, s, &v, m ? embree_tracer(m) : scene_tracer(s), m ? 2e-4 : 0.0};

@@ -20,20 +20,22 @@ static double error_of(const bench_summary *s, panel p)
 }
 static double time_of(const bench_summary *s, panel p) { return p == PANEL_OCCLUSION ? s->yards : s->all_yards; }
 
+static bool drawn(const bench_summary *s, panel p) { return isfinite(error_of(s, p)) && isfinite(time_of(s, p)); }
+
 static void curve_data(FILE *f, const bench_results *r, const bench_summary *s, int first, panel p)
 {
     fprintf(f, "$c%d_%d << END\n", (int)p, first);
     for (int i = first; i < r->row_count; i++)
-        if (same_curve(&r->rows[first], &r->rows[i]) && isfinite(error_of(&s[i], p)))
+        if (same_curve(&r->rows[first], &r->rows[i]) && drawn(&s[i], p))
             fprintf(f, "%.5f %.6f\n", time_of(&s[i], p), error_of(&s[i], p));
     fprintf(f, "END\n");
 }
 
 static bool starts_curve(const bench_results *r, const bench_summary *s, int i, panel p)
 {
-    if (r->rows[i].kind != ROW_METHOD || !isfinite(error_of(&s[i], p))) return false;
+    if (r->rows[i].kind != ROW_METHOD || !drawn(&s[i], p)) return false;
     for (int k = 0; k < i; k++)
-        if (same_curve(&r->rows[k], &r->rows[i])) return false;
+        if (same_curve(&r->rows[k], &r->rows[i]) && drawn(&s[k], p)) return false;
     return true;
 }
 
@@ -41,7 +43,7 @@ static bool starts_curve(const bench_results *r, const bench_summary *s, int i, 
 static bool on_front(const bench_results *r, const bench_summary *s, int i, panel p)
 {
     double x = time_of(&s[i], p), y = error_of(&s[i], p);
-    if (r->rows[i].kind != ROW_METHOD || !isfinite(y)) return false;
+    if (r->rows[i].kind != ROW_METHOD || !drawn(&s[i], p)) return false;
     for (int k = 0; k < r->row_count; k++)
         if (r->rows[k].kind == ROW_METHOD && time_of(&s[k], p) < x && error_of(&s[k], p) <= y) return false;
     return true;

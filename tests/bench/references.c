@@ -9,7 +9,15 @@
 // Points of the references' quadratures: enough that what is left is well below the error of 1024 samples.
 enum { ELEVATIONS = 24, AZIMUTHS = 36, DISTANCES = 16, DISC = 72, SLICES = 64 };
 
-typedef enum reference_kind { REF_NONE, REF_SSDO, REF_ALCHEMY, REF_HORIZON, REF_BITMASK } reference_kind;
+typedef enum reference_kind {
+    REF_NONE,
+    REF_SSDO,
+    REF_ALCHEMY,
+    REF_HORIZON,
+    REF_BITMASK,
+    REF_HEMISPHERE,
+    REF_HBAO
+} reference_kind;
 
 typedef struct reference_job {
     const bench_scene *b;
@@ -26,6 +34,8 @@ static reference_kind kind_of(const bench_row *row)
     if (strcmp(row->m->name, "alchemy") == 0) return REF_ALCHEMY;
     if (strcmp(row->m->name, "gtao") == 0) return REF_HORIZON;
     if (strcmp(row->m->name, "bitmask") == 0) return REF_BITMASK;
+    if (strcmp(row->m->name, "hemisphere") == 0) return REF_HEMISPHERE;
+    if (strcmp(row->m->name, "hbao") == 0) return REF_HBAO;
     return REF_NONE;
 }
 
@@ -42,6 +52,10 @@ static bool one_pixel(void *context, size_t i, int worker)
     if (j->kind == REF_SSDO) j->out[i] = reference_ssdo(l, p, &so).occlusion;
     if (j->kind == REF_ALCHEMY) j->out[i] = reference_alchemy(l, p, &ao);
     if (j->kind == REF_HORIZON) j->out[i] = reference_horizon(l, p, &co);
+    reference_hemisphere_options ho = {
+        .radius = j->radius, .elevations = ELEVATIONS, .azimuths = ELEVATIONS, .distances = ELEVATIONS};
+    if (j->kind == REF_HEMISPHERE) j->out[i] = reference_hemisphere(l, p, &ho);
+    if (j->kind == REF_HBAO) j->out[i] = fmax(0.0, reference_hbao(l, p, &(reference_hbao_options){.radius = j->radius}));
     if (j->kind == REF_BITMASK) j->out[i] = reference_bitmask(l, p, &co);
     return true;
 }
@@ -67,7 +81,7 @@ double *bench_reference(const bench_scene *b, const bench_row *row, const char *
     pass_settings set = bench_settings(row, b);
     reference_job j = {b, row, kind_of(row), set.radius, set.thickness, NULL};
     if (j.kind == REF_NONE) return NULL;
-    if (j.kind == REF_ALCHEMY || j.kind == REF_HORIZON) j.thickness = INFINITY; // they have none
+    if (j.kind != REF_SSDO && j.kind != REF_BITMASK) j.thickness = INFINITY; // the others have none
     size_t size = (size_t)b->pixel_count * sizeof *j.out;
     j.out = mem_pixels((size_t)b->pixel_count, sizeof *j.out, e);
     if (!j.out) return NULL;

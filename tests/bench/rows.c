@@ -5,7 +5,7 @@
 #include "base/mem.h"
 #include "bench.h"
 
-static const int budgets[] = {8, 16, 32, 64, 128, 256, 512, 1024};
+static const int budgets[] = {8, 16, 32, 64, 128, 256, 1024};
 enum { BUDGETS = sizeof budgets / sizeof *budgets };
 
 // Rows besides a method's own: the same shader under another assumption.
@@ -55,7 +55,7 @@ static int method_rows(const method *m, bench_row *rows)
     if (m->blur > 0) rows[n++] = row_of(m, "", m->samples * 4, m->blur);
     for (size_t v = 0; v < sizeof variants / sizeof *variants; v++) {
         if (strcmp(variants[v].method, m->name) != 0) continue;
-        for (int i = 2; i <= BUDGETS; i += 2) {
+        for (int i = 1; i <= BUDGETS; i += 2) {
             bool own = i == BUDGETS; // the last one: the method's defaults
             bench_row *r = &rows[n++];
             *r = row_of(m, variants[v].suffix, own ? m->samples : budgets[i], own ? m->blur : 0);
@@ -99,7 +99,7 @@ static bool collect(rig *r, const bench_scene *b, look_sums *out, error *e)
     row.scale = quarter;
     frame_result f;
     size_t n = (size_t)b->gb.width * (size_t)b->gb.height, seen = 0;
-    if (!bench_run(r, b, &row, 1 << LAYER_OCCLUSION, &f, NULL, e)) return false;
+    if (!bench_run(r, b, &row, 1 << LAYER_OCCLUSION, &f, NULL, NULL, e)) return false;
     out->s = mem_pixels(n, sizeof(float), e), out->a = mem_pixels(n, sizeof(float), e), out->b = mem_pixels(n, sizeof(float), e);
     for (size_t i = 0; out->s && out->a && out->b && i < n; i++) {
         if (!sample_is_surface(&b->s, (int)i) || seen++ % 9) continue;

@@ -23,8 +23,18 @@ unsigned bench_layers(const bench_row *row)
     return 1u << LAYER_OCCLUSION | 1u << LAYER_RADIANCE | (row->m->bounce ? 1u << LAYER_INDIRECT : 0u);
 }
 
+static void take_time(const frame_result *f, const char *without, bench_time *t)
+{
+    if (!t) return;
+    *t = (bench_time){f->cpu_ms[STAGE_PASSES], f->wall_ms[STAGE_PASSES]};
+    for (int i = 0; i < f->timing_count; i++)
+        if (strcmp(f->timings[i].name, "upload") == 0 || strcmp(f->timings[i].name, without) == 0)
+            t->cpu -= f->timings[i].cpu_ms, t->wall -= f->timings[i].wall_ms;
+}
+
 // The rig's environment is the scene's for the time of a run; the scene keeps owning it.
-bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned layers, frame_result *out, bench_time *t, error *e)
+bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned layers, frame_result *out, bench_time *direct,
+               bench_time *all, error *e)
 {
     pass_settings set = bench_settings(row, b);
     r->job.env = b->env;
@@ -34,11 +44,10 @@ bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned laye
     bool ok = rig_run(r, &b->gb, row->m, &set, layers, out, e);
     r->job.env_loaded = false;
     r->job.env_image = (gpu_image){0};
-    if (!ok || !t) return ok;
-    *t = (bench_time){out->cpu_ms[STAGE_PASSES], out->wall_ms[STAGE_PASSES]};
-    for (int i = 0; i < out->timing_count; i++)
-        if (strcmp(out->timings[i].name, "upload") == 0) t->cpu -= out->timings[i].cpu_ms, t->wall -= out->timings[i].wall_ms;
-    return ok;
+    if (!ok) return false;
+    take_time(out, "irradiance", direct);
+    take_time(out, "", all);
+    return true;
 }
 
 // ---- pictures of rows that are no method
@@ -123,7 +132,7 @@ bool bench_measure(rig *r, const bench_scene *b, const bench_row *row, const cha
     frame_result f;
     const sample *s = &b->s;
     unsigned layers = bench_layers(row);
-    if (!bench_run(r, b, row, layers, &f, NULL, e)) return false;
+    if (!bench_run(r, b, row, layers, &f, &cell->direct[0], &cell->all[0], e)) return false;
     cell->has_occlusion = cell->has_radiance = true;
     cell->has_indirect = layers & 1u << LAYER_INDIRECT;
     cell->occlusion = sample_score(s, f.layers[LAYER_OCCLUSION], s->ao[0], s->ao[1], 1);

@@ -23,26 +23,23 @@ double bench_median(const double *values, int count) { return bench_percentile(v
 
 double bench_megapixels(const bench_scene *b) { return 1e-6 * b->gb.width * b->gb.height; }
 
-static const bench_time *times_of(const bench_results *r, int row, int which, bool all)
-{
-    const bench_cell *c = &r->cells[row * r->scene_count + which];
-    return all ? c->all : c->direct;
-}
-
 bench_time bench_cell_time(const bench_results *r, int row, int which, bool all)
 {
-    const bench_time *t = times_of(r, row, which, all);
+    const bench_cell *c = &r->cells[row * r->scene_count + which];
+    const bench_time *t = all ? c->all : c->direct;
     double cpu[BENCH_ROUNDS], wall[BENCH_ROUNDS];
-    for (int i = 0; i < r->rounds; i++) cpu[i] = t[i].cpu, wall[i] = t[i].wall;
-    return (bench_time){bench_median(cpu, r->rounds), bench_median(wall, r->rounds)};
+    for (int i = 0; i < c->rounds; i++) cpu[i] = t[i].cpu, wall[i] = t[i].wall;
+    if (c->rounds == 0 || which >= r->timed_count) return (bench_time){NAN, NAN};
+    return (bench_time){bench_median(cpu, c->rounds), bench_median(wall, c->rounds)};
 }
 
 double bench_cell_yards(const bench_results *r, int row, int which, bool all)
 {
-    const bench_time *t = times_of(r, row, which, all);
+    const bench_cell *c = &r->cells[row * r->scene_count + which];
+    const bench_time *t = all ? c->all : c->direct;
     double ratio[BENCH_ROUNDS];
-    for (int i = 0; i < r->rounds; i++) ratio[i] = t[i].cpu / r->yard[which][i].cpu;
-    return bench_median(ratio, r->rounds);
+    for (int i = 0; i < c->rounds; i++) ratio[i] = t[i].cpu / r->yard[which][c->round[i]].cpu;
+    return c->rounds && which < r->timed_count ? bench_median(ratio, c->rounds) : NAN;
 }
 
 static double square(double x) { return x * x; }
@@ -80,5 +77,6 @@ void bench_summarise(const bench_results *r, int set, bench_summary *out)
         for (int k = 0; k < r->row_count; k++)
             if (r->rows[k].kind == ROW_METHOD && out[k].yards < out[i].yards && out[k].occlusion <= out[i].occlusion)
                 out[i].front = false;
+        if (!isfinite(out[i].yards)) out[i].front = false;
     }
 }

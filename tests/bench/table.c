@@ -151,7 +151,7 @@ static void noise(FILE *f, const bench_results *r)
 {
     double cpu[BENCH_SCENES * BENCH_ROUNDS], wall[BENCH_SCENES * BENCH_ROUNDS];
     int n = 0;
-    for (int s = 0; s < r->scene_count; s++)
+    for (int s = 0; s < r->timed_count; s++)
         for (int i = 0; i < r->rounds; i++, n++) {
             double mp = bench_megapixels(&r->scenes[s]);
             cpu[n] = r->yard[s][i].cpu / mp, wall[n] = r->yard[s][i].wall / mp;
@@ -176,12 +176,13 @@ static void legend(FILE *f, const bench_results *r)
         "renders); radiance and indirect are relative to the mean of the truth. *Against A*: against the brute-force reference "
         "that makes the method's own assumptions on the same layers, at %d stratified pixels a scene. Times are of the GL work "
         "for "
-        "occlusion alone (CPU time of the process; no upload, no read-back), medians of %d interleaved rounds; *x yard* is in "
+        "occlusion alone (CPU time of the process; no upload, no read-back), medians of %d interleaved rounds (one, above %d "
+        "samples), on the rendered scenes; *x yard* is in "
         "units of the yardstick, a 64-tap (8 x 8) texelFetch box over an R32F texture of the frame's size, run in the same "
         "round; "
         "*all layers* adds radiance and, where the method has one, its bounce. Efficiency is 1 / (occlusion rmse^2 x yards). "
         "\\*: on the Pareto front of error against time.\n",
-        BENCH_PIXELS, r->rounds);
+        BENCH_PIXELS, r->rounds, BENCH_LONG);
     fprintf(f, "\nAlchemy's best single scale and contrast over these scenes: %.1f and %.2f.\n", r->alchemy_scale,
             r->alchemy_contrast);
     fprintf(f,

@@ -45,7 +45,7 @@ bool rig_run(rig *r, const gbuffer *gb, const method *m, const pass_settings *se
                        .want_radiance = light && m->fills_radiance,
                        .want_visibility = layers & 1u << LAYER_VISIBILITY,
                        .irradiance = light && !m->fills_radiance,
-                       .blur = set->blur > 0,
+                       .blur = set->blur > 0 && !m->fills_sh,
                        .look = set->contrast != 1.0 || set->scale != 1.0 || !m->fills_radiance,
                        .depthmask = layers & 1u << LAYER_DEPTHMASK,
                        .bounce = bounce};

@@ -54,7 +54,7 @@ static options parse(char *line)
 }
 
 static const char *const everything =
-    "--layers occlusion,bent --float --method alchemy --radius 0.1 --samples 100 --thickness inf --angle-bias 12.5 --blur none --scale 1.7 "
+    "--layers occlusion,bent --float --method alchemy --radius 0.1 --samples 100 --thickness inf --angle-bias 12.5 --sh-sigma 0.25 --from-sh --blur none --scale 1.7 "
     "--contrast 0.3333333333333333 --bounce ssdo --bounce-strength 1e-300 --env sky.exr --env-up y --env-rotate -12.5 "
     "--env-scale 3 "
     "--env-frame camera --env-lod 2.5 --mode visibility --amount 0 --multiply all --depthmask-strength 2 --position 'View Layer.Position' --normal 'it'\\''s N' "

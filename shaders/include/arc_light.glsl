@@ -1,0 +1,55 @@
+// Light through the open sectors of a slice, and from the suns.
+
+// The slice in CELLS pieces of equal angle; each looks the environment up once, at a level of its own solid angle, and weighs it by
+// its share of open sectors. `all` is what arrives with nothing in the way.
+const int CELLS = 12;
+const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
+
+struct Light {
+    vec3 open;
+    float open_luminance, all_luminance;
+};
+
+void add_sky(inout Light light, Side s, vec3 V, vec3 across, float n, float weight, uvec2 blocked, float jitter) {
+    float from = n - 0.5 * PI, width = PI / float(CELLS), c = 0.0, wedge = PI / float(params.slices);
+    for (int i = 0; i < CELLS; i++) {
+        float t0 = from + float(i) * width, t = t0 + 0.5 * width, next = i + 1 == CELLS ? 1.0 : share_at(s, t0 + width);
+        uvec2 cell = sectors(c, next, jitter);
+        float share = sector_share(cell), open = sector_share(cell & ~blocked);
+        vec3 direction = to_map(cos(t) * V + sin(t) * across);
+        float solid_angle = wedge * max(abs(sin(t)) * width, 0.25 * width * width);
+        vec3 L = radiance_from(direction, params.level < 0.0 ? map_level(direction, solid_angle) : params.level);
+        light.open += weight * open * L;
+        light.open_luminance += weight * open * dot(L, LUMINANCE);
+        light.all_luminance += weight * share * dot(L, LUMINANCE);
+        c = next;
+    }
+}
+
+// Every sun gets a slice side of its own, whose sector 0 .. 63 that holds the sun's direction is tested exactly there.
+void add_suns(inout Light light, vec3 P, vec3 N, vec3 V, float eye_distance, vec2 origin, float step_jitter) {
+    for (int i = 0; i < params.suns; i++) {
+        vec3 S = params.sun_direction[i].xyz;
+        float cosine = dot(N, S), along = dot(S, V);
+        vec3 aside = S - along * V;
+        float sine = length(aside);
+        vec3 across = sine > 1e-4 ? aside / sine : tangent_frame(V)[0];
+        float up = dot(N, V), sideways = dot(N, across), n = atan(sideways, up);
+        float inverse_length = inversesqrt(max(up * up + sideways * sideways, 1e-12));
+        Side s = side_of(V, across, N, n, inverse_length, eye_distance);
+        float place = min(share_at(s, atan(sine, along)), 0.9999) * 64.0, jitter = fract(place);
+        Line line = line_of(P, V, across, origin);
+        Sectors slots = march(s, line, P, N, step_jitter, jitter);
+#ifdef PLANES
+        Line back = line_of(P, V, -across, origin);
+        block_by_planes(slots, s, V, across, n, line, back, P, jitter);
+#endif
+        int k = int(place);
+        uint word = k < 32 ? slots.blocked.x : slots.blocked.y;
+        float visible = ((word >> uint(k & 31)) & 1u) == 0u ? 1.0 : 0.0;
+        vec3 L = max(cosine, 0.0) * params.sun_light[i].rgb;
+        light.open += visible * L;
+        light.open_luminance += visible * dot(L, LUMINANCE);
+        light.all_luminance += dot(L, LUMINANCE);
+    }
+}

@@ -1,0 +1,47 @@
+// 64 sectors of equal weight of one slice, each tested at one direction: sector k at share (k + jitter) / 64. The jitter is drawn per
+// slice, so that a mask's expected weight is exact; and any single direction can be tested exactly by choosing the jitter.
+// With BOUNCE a sector also takes the light of what blocks it first.
+
+struct Sectors {
+    uvec2 blocked;
+#ifdef BOUNCE
+    vec3 light;
+#endif
+};
+
+Sectors all_open() {
+    Sectors s;
+    s.blocked = uvec2(0u);
+#ifdef BOUNCE
+    s.light = vec3(0.0);
+#endif
+    return s;
+}
+
+uvec2 sectors_below(int k) {
+    uint low = k >= 32 ? ~0u : ~(~0u << uint(max(k, 0)));
+    uint high = k >= 64 ? ~0u : k <= 32 ? 0u : ~(~0u << uint(k - 32));
+    return uvec2(low, high);
+}
+// Sectors whose direction lies in [from, to).
+uvec2 sectors(float from, float to, float jitter) {
+    int a = int(ceil(from * 64.0 - jitter)), b = int(ceil(to * 64.0 - jitter));
+    return sectors_below(b) & ~sectors_below(a);
+}
+float sector_share(uvec2 mask) { return float(bitCount(mask.x) + bitCount(mask.y)) * (1.0 / 64.0); }
+
+// Blocks sectors; those that were open take the light.
+void block(inout Sectors s, uvec2 mask, vec3 light) {
+#ifdef BOUNCE
+    s.light += sector_share(mask & ~s.blocked) * light;
+#endif
+    s.blocked |= mask;
+}
+
+// The other side's sectors are counted from the other end.
+void add_mirrored(inout Sectors s, Sectors other) {
+    s.blocked |= bitfieldReverse(other.blocked.yx);
+#ifdef BOUNCE
+    s.light += other.light;
+#endif
+}

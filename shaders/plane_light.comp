@@ -1,0 +1,41 @@
+#version 450 core
+// What each plane sends to the surfaces it faces: the mean of light x albedo over its own pixels, on a fixed grid over the frame. One
+// work group; every invocation looks after one plane, so that the sum has one order.
+#include "include/frame.glsl"
+#include "include/arc_params.glsl"
+
+struct Plane {
+    vec4 equation;
+    vec4 u, v;
+    vec4 half_size;
+    vec4 light;
+    uvec4 cells[2];
+};
+layout(std430, binding = 0) buffer Planes { Plane planes[12]; };
+layout(rgba32f, binding = 4) readonly uniform image2D sender_image;
+layout(rgba32f, binding = 5) readonly uniform image2D albedo_image;
+
+const int GRID = 48;
+
+vec3 sent_by(ivec2 q) {
+    vec3 L = imageLoad(sender_image, q).rgb;
+    return params.exitant == 1 ? L : L * imageLoad(albedo_image, q).rgb;
+}
+
+void main() {
+    int i = int(gl_LocalInvocationIndex);
+    if (i >= params.planes) return;
+    vec4 equation = planes[i].equation;
+    vec3 sum = vec3(0.0);
+    float count = 0.0;
+    for (int k = 0; k < GRID * GRID; k++) {
+        ivec2 q = (ivec2(k % GRID, k / GRID) * 2 + 1) * frame.size.xy / (2 * GRID);
+        float depth = depth_at(q);
+        if (depth == 0.0) continue;
+        float off = abs(dot(equation.xyz, position_of(q, depth)) - equation.w);
+        if (off > planes[i].half_size.z * (is_orthographic() ? 1.0 : depth) || dot(equation.xyz, normal_at(q)) < 0.99) continue;
+        sum += sent_by(q);
+        count += 1.0;
+    }
+    planes[i].light = vec4(count > 0.0 ? sum / count : vec3(0.0), 0.0);
+}

@@ -1,0 +1,41 @@
+#version 450 core
+// Brings the 16 sample sets of the 4 x 4 pattern together: the mean of the four 4 x 4 windows that hold the pixel, so every set has the
+// same weight where nothing interrupts; taps across an edge lose theirs (plane distance and normals, as in blur.comp). The
+// coefficients are linear in visibility, so the filter acts on them and not on light.
+#include "include/frame.glsl"
+
+layout(rgba32f, binding = 2) readonly uniform image2D sh0_in;
+layout(rgba32f, binding = 3) readonly uniform image2D sh1_in;
+layout(rgba32f, binding = 4) readonly uniform image2D sh2_in;
+layout(rgba32f, binding = 5) writeonly uniform image2D sh0_out;
+layout(rgba32f, binding = 6) writeonly uniform image2D sh1_out;
+layout(rgba32f, binding = 7) writeonly uniform image2D sh2_out;
+
+void main() {
+    ivec2 p = this_pixel();
+    if (!in_tile(p)) return;
+    vec4 c0 = imageLoad(sh0_in, p), c1 = imageLoad(sh1_in, p), c2 = imageLoad(sh2_in, p);
+    float depth = depth_at(p);
+    vec3 P = position_of(p, depth), N = normal_at(p);
+    float scale = depth == 0.0 ? 0.0 : 1.0 / footprint(depth);
+    // Differences from the centre are summed, so that a constant passes unchanged to the bit.
+    vec4 s0 = vec4(0.0), s1 = vec4(0.0), s2 = vec4(0.0);
+    float total = 1.0;
+    for (int y = -2; y <= 2; y++)
+        for (int x = -2; x <= 2; x++) {
+            ivec2 q = p + ivec2(x, y);
+            float tap_depth = depth_at(q);
+            if ((x == 0 && y == 0) || tap_depth == 0.0 || depth == 0.0) continue;
+            float off_plane = dot(N, position_of(q, tap_depth) - P) * scale;
+            float same_way = max(0.0, dot(N, normal_at(q)));
+            float window = (abs(x) == 2 ? 0.5 : 1.0) * (abs(y) == 2 ? 0.5 : 1.0);
+            float w = window * exp(-0.5 * off_plane * off_plane) * pow(same_way, 8.0);
+            s0 += w * (imageLoad(sh0_in, q) - c0);
+            s1 += w * (imageLoad(sh1_in, q) - c1);
+            s2 += w * (imageLoad(sh2_in, q) - c2);
+            total += w;
+        }
+    imageStore(sh0_out, p, c0 + s0 / total);
+    imageStore(sh1_out, p, c1 + s1 / total);
+    imageStore(sh2_out, p, c2 + s2 / total);
+}

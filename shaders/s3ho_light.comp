@@ -1,0 +1,57 @@
+#version 450 core
+// lint: LIGHT VISIBILITY | NOTHING
+// From the SH vector o of cosine-weighted visibility to the layers:
+//   radiance   = (1 / pi) sum o_lm L_lm           L_lm: the environment's plain radiance coefficients in the axes of o
+//   visibility = luminance of that over its value with nothing in the way (o_lm = A_l Y_lm(n), A = pi, 2 pi / 3, pi / 4)
+#include "include/frame.glsl"
+#include "include/sh.glsl"
+
+layout(std140, binding = 1) uniform Params {
+    vec4 world_from_camera[3]; // rows
+    vec4 bands;                // A_0, A_1, A_2, low-pass included
+    vec4 light[9];             // rgb L_lm
+} params;
+
+layout(rgba32f, binding = 2) readonly uniform image2D sh0_image;
+layout(rgba32f, binding = 3) readonly uniform image2D sh1_image;
+layout(rgba32f, binding = 4) readonly uniform image2D sh2_image;
+layout(r32f, binding = 5) writeonly uniform image2D occlusion_image;
+#ifdef LIGHT
+layout(rgba32f, binding = 6) writeonly uniform image2D radiance_image;
+#endif
+#ifdef VISIBILITY
+layout(r32f, binding = 7) writeonly uniform image2D visibility_image;
+#endif
+
+vec3 lit(float o[9]) {
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 9; i++) sum += o[i] * params.light[i].rgb;
+    return max(sum / PI, vec3(0.0)); // few bands ring below zero
+}
+
+vec3 open_light(vec3 n) {
+    vec3 d = vec3(dot(params.world_from_camera[0].xyz, n), dot(params.world_from_camera[1].xyz, n), dot(params.world_from_camera[2].xyz, n));
+    float y[9];
+    sh_basis(d, y);
+    for (int i = 0; i < 9; i++) y[i] *= i == 0 ? params.bands.x : i < 4 ? params.bands.y : params.bands.z;
+    return lit(y);
+}
+
+void main() {
+    ivec2 p = this_pixel();
+    if (!in_tile(p)) return;
+    vec4 a = imageLoad(sh0_image, p), b = imageLoad(sh1_image, p), c = imageLoad(sh2_image, p);
+    bool surface = depth_at(p) != 0.0;
+    imageStore(occlusion_image, p, vec4(surface ? a.w : 1.0));
+#if defined(LIGHT) || defined(VISIBILITY)
+    vec3 radiance = surface ? lit(float[](a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z)) : vec3(0.0);
+#endif
+#ifdef LIGHT
+    imageStore(radiance_image, p, vec4(radiance, 0.0));
+#endif
+#ifdef VISIBILITY
+    const vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
+    float all = surface ? dot(luminance, open_light(normal_at(p))) : 0.0;
+    imageStore(visibility_image, p, vec4(all > 0.0 ? min(1.0, dot(luminance, radiance) / all) : 1.0));
+#endif
+}

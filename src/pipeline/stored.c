@@ -1,0 +1,69 @@
+#include "pipeline/stored.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/half.h"
+#include "base/mem.h"
+#include "pipeline/layers.h"
+
+enum { NAME_SIZE = 96 };
+
+static void name_of(const options *o, int layer, int k, char *name)
+{
+    const layer_info *l = &layer_table[LAYER_SH_0 + layer];
+    snprintf(name, NAME_SIZE, "%s%s.%c", o->prefix ? o->prefix : "", l->name, l->channels[k]);
+}
+
+static exr_channel *find(const exr_file *file, const char *name, const exr_part **part)
+{
+    for (int p = 0; p < file->part_count; p++)
+        for (int c = 0; c < file->parts[p].channel_count; c++)
+            if (strcmp(file->parts[p].channels[c].name, name) == 0) {
+                *part = &file->parts[p];
+                return &file->parts[p].channels[c];
+            }
+    return NULL;
+}
+
+bool stored_sh_want(const options *o, exr_file *file, error *e)
+{
+    const exr_part *part;
+    for (int i = 0; i < 9; i++) {
+        char name[NAME_SIZE];
+        name_of(o, i / 3, i % 3, name);
+        exr_channel *channel = find(file, name, &part);
+        if (!channel)
+            return err_set(
+                e, ERR_INPUT, file->path, name,
+                "--from-sh needs the layers that --method s3ho --layers sh_0,sh_1,sh_2 writes, and this one is missing");
+        channel->wanted = true;
+    }
+    return true;
+}
+
+static float sample_at(const exr_channel *c, size_t i)
+{
+    float v = c->type == SAMPLE_HALF    ? half_to_float(((const uint16_t *)c->data)[i])
+              : c->type == SAMPLE_FLOAT ? ((const float *)c->data)[i]
+                                        : (float)((const uint32_t *)c->data)[i];
+    return isfinite(v) ? v : 0.0f;
+}
+
+bool stored_sh_load(const options *o, const exr_file *file, const gbuffer *gb, float *out[3], error *e)
+{
+    size_t n = (size_t)gb->width * (size_t)gb->height;
+    for (int i = 0; i < 9; i++) {
+        char name[NAME_SIZE];
+        name_of(o, i / 3, i % 3, name);
+        const exr_part *part = NULL;
+        const exr_channel *channel = find(file, name, &part);
+        if (!channel || !channel->data || !box2_equal(part->data_window, gb->data_window))
+            return err_set(e, ERR_INPUT, file->path, name,
+                           "this stored layer has another data window than the picture's surfaces");
+        if (i % 3 == 0 && !(out[i / 3] = mem_pixels(3 * n, sizeof **out, e))) return false;
+        for (size_t k = 0; k < n; k++) out[i / 3][3 * k + (size_t)(i % 3)] = sample_at(channel, k);
+    }
+    return true;
+}

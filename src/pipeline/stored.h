@@ -1,0 +1,14 @@
+// --from-sh: the SH layers that an earlier run left in the input.
+#ifndef SSDO_PIPELINE_STORED_H
+#define SSDO_PIPELINE_STORED_H
+
+#include "cli/options.h"
+#include "gbuffer/gbuffer.h"
+
+// Marks the nine channels <prefix>sh_0.R ... sh_2.B as wanted. ERR_INPUT names the first that is missing, and what writes them.
+bool stored_sh_want(const options *o, exr_file *file, error *e);
+
+// The loaded channels as floats, three a pixel in each of the three arrays, which the caller frees. NaN and infinities become 0.
+bool stored_sh_load(const options *o, const exr_file *file, const gbuffer *gb, float *out[3], error *e);
+
+#endif
