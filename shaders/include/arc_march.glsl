@@ -4,6 +4,9 @@
 // its highest, its back included, which lies `thickness` behind its front on the view ray. The run that starts at the receiver
 // itself blocks all between its highest point and the tangent.
 
+// Without a radius a run is believed beyond the frame for this share of what is seen of it.
+const float BELIEVED = 0.3;
+
 struct Run {
     bool alive, own;  // own: begins at the receiver
     bool starts;      // begins at its own silhouette
@@ -98,7 +101,8 @@ Sectors march(Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter
         vec2 ray = away(s, run.last);
         if (e.x * ray.y - e.y * ray.x > 0.0) e = -e; // outwards: away from the view ray, clockwise from V
         float b = dot(run.last, e);
-        vec2 end = run.last + e * (sqrt(max(b * b + R * R - run.last_distance * run.last_distance, 0.0)) - b);
+        float to_ball = sqrt(max(b * b + R * R - run.last_distance * run.last_distance, 0.0)) - b;
+        vec2 end = run.last + e * (R < UNLIMITED ? to_ball : min(to_ball, BELIEVED * length(run.last - run.first)));
         include_share(run, share(s, end), end);
     }
     finish(slots, s, run, false, step_size, jitter);

@@ -14,7 +14,6 @@ layout(std140, binding = 1) uniform Params {
     int exitant, unused0, unused1;
     vec4 sun_direction[4]; // camera space, unit
     vec4 sun_light[4];     // rgb: irradiance over pi of a surface that faces the sun
-    vec4 test;
 } params;
 
 const float UNLIMITED = 1e12; // radii from here on mean: no limit

@@ -12,6 +12,7 @@ struct Plane {
 };
 layout(std140, binding = 2) uniform Planes { Plane planes[12]; };
 
+const int CHORDS = 6; // directions tested of the arc that a plane could block
 const float ROOM = 0.004; // of the depth: as far as a plane may lie off its own surface, and a little more
 
 // Depth at which a pixel's ray meets a plane; huge if it does not.
@@ -42,7 +43,7 @@ bool supported(Plane k, vec3 X) {
 // Without a radius a plane is not believed farther from its support than the support is wide.
 bool near_support(Plane k, vec3 X) {
     vec2 at = vec2(dot(k.u.xyz, X) - k.u.w, dot(k.v.xyz, X) - k.v.w) / k.half_size.xy;
-    return all(lessThanEqual(abs(at), vec2(3.0)));
+    return all(lessThanEqual(abs(at), vec2(1.5)));
 }
 
 // Whether the plane's point X counts.
@@ -54,7 +55,6 @@ bool stands(Plane k, vec3 X, bool border) {
 }
 
 void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, Line right, Line left, vec3 P, float jitter) {
-    int cells = int(params.test.x);
     for (int i = 0; i < params.planes; i++) {
         Plane k = planes[i];
         // Distance to the plane along direction t: h / (m cos(t - t0)).
@@ -70,8 +70,8 @@ void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, 
         if (!relevant) continue;
         bool border_right = border_allows(k, right), border_left = border_allows(k, left);
         vec3 sent = h < 0.0 ? k.light.rgb : vec3(0.0); // from the side that the camera sees
-        float width = (to - from) / float(cells), c = share_at(s, from);
-        for (int j = 0; j < cells; j++) {
+        float width = (to - from) / float(CHORDS), c = share_at(s, from);
+        for (int j = 0; j < CHORDS; j++) {
             float t = from + (float(j) + jitter) * width, next = share_at(s, from + float(j + 1) * width);
             vec3 X = P + abs(h) / (m * cos(t - t0)) * (cos(t) * V + sin(t) * across);
             if (stands(k, X, t > 0.0 ? border_right : border_left)) block(slots, sectors(c, next, jitter), sent);

@@ -22,6 +22,7 @@ void options_defaults(options *o)
         .scale = 1,
         .contrast = 1,
         .bounce_strength = 1,
+        .vpl_count = 512,
         .env_scale = 1,
         .env_frame = "world",
         .env_lod = -1,

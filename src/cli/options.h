@@ -22,7 +22,9 @@ typedef struct options {
     const char *method;
     radius_unit radius_unit;
     double radius;
-    int samples;       // 0 = the method's default
+    int quality;       // -1 draft, 0 standard, 1 high: of the method's own number of samples
+    bool no_planes;    // --planes off
+    int samples;       // 0 = the method's default at that quality
     double thickness;  // share of the radius; < 0 auto, INFINITY for inf
     double angle_bias; // degrees
     double sh_sigma;   // radians
@@ -30,8 +32,9 @@ typedef struct options {
     int blur; // radius in pixels; 0 none; -1 the method's default
     double scale, contrast;
 
-    const char *bounce; // none, ssdo; NULL = the method's own where it has one
+    const char *bounce; // none, arc, ssdo; NULL = the method's own where it has one
     double bounce_strength;
+    int vpl_count;
 
     const char *env;
     int env_up;        // 0 by renderer, 'y', 'z'

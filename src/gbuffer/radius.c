@@ -6,8 +6,8 @@
 #include "gbuffer/solve.h"
 
 enum { SAMPLES = 40000 };
-// Share of the extent (tuned on the samples against the radius a lighter would choose).
-static const double radius_share = 0.15;
+// Share of the extent. The five samples' own occlusion distances lie at 0.26 to 0.41 of it; a third is in the middle.
+static const double radius_share = 0.33;
 static const double farthest = 4.0; // in median depths
 
 // Pixels on a regular grid, coarse enough for about SAMPLES of them.

@@ -6,9 +6,9 @@
 
 #include "base/mem.h"
 
-static const double BRIGHT = 10.0;    // times the mean luminance
-static const double LARGEST = 0.02;   // sr
-static const double SMALLEST = 0.01;  // of the map's flux
+static const double BRIGHT = 10.0;   // times the mean luminance
+static const double LARGEST = 0.02;  // sr
+static const double SMALLEST = 0.01; // of the map's flux
 
 typedef struct finder {
     const env_level *map;
@@ -89,7 +89,7 @@ static int find(finder *f, candidate list[SUNS_MAX])
         candidate c = {measure(f), i};
         if (c.s.solid_angle <= LARGEST && flux_of(&c.s) >= SMALLEST * f->total) count = keep(list, count, c);
     }
-    memset(f->seen, 0, (size_t)texels);
+    memset(f->seen, 0, (size_t)f->map->width * (size_t)f->map->height);
     return count;
 }
 

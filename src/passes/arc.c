@@ -2,10 +2,11 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const float HUGE_LENGTH = 1e30f, NO_LIMIT = 1e15f;
+static const float KAPPA = 1.0f;     // a run is as thick as it is wide
+static const float SPACING = 2.0f;   // steps fall at the squares of an even spacing
+static const float TOLERANCE = 1.3f; // a run may turn by 52 degrees between two steps
 
 void arc_grid(int samples, int *slices, int *steps)
 {
@@ -14,27 +15,20 @@ void arc_grid(int samples, int *slices, int *steps)
     *steps = samples / (2 * *slices) > 1 ? samples / (2 * *slices) : 1;
 }
 
-static float knob(const char *name, float fallback)
-{
-    const char *v = getenv(name);
-    return v ? (float)atof(v) : fallback;
-}
-
 arc_params arc_params_of(const pass_context *c)
 {
     const pass_settings *s = &c->set;
     arc_params p = {
         .radius = (float)s->radius,
         .thickness = isinf(s->thickness) ? HUGE_LENGTH : (float)s->thickness,
-        .kappa = knob("KAPPA", 1.0f),
+        .kappa = KAPPA,
         .fixed_thickness = s->thickness_fixed,
         .seed = s->seed,
         .planes = c->planes.count,
-        .spacing = knob("SPACING", 2.0f),
-        .tolerance = knob("TOL", 2.0f),
+        .spacing = SPACING,
+        .tolerance = TOLERANCE,
         .level = (float)s->env_level,
         .strength = (float)s->bounce_strength,
-        .test = {knob("T0", 8), knob("T1", 0), knob("T2", 0), knob("T3", 0)},
     };
     arc_grid(s->samples, &p.slices, &p.steps);
     return p;
@@ -48,10 +42,7 @@ typedef struct plane_block {
     unsigned cells[PLANE_CELLS / 2]; // two rows each
 } plane_block;
 
-static void put(float to[4], vec3 a, double w)
-{
-    to[0] = (float)a.x, to[1] = (float)a.y, to[2] = (float)a.z, to[3] = (float)w;
-}
+static void put(float to[4], vec3 a, double w) { to[0] = (float)a.x, to[1] = (float)a.y, to[2] = (float)a.z, to[3] = (float)w; }
 
 // Finds the planes, once a frame, and puts them where the shader reads them.
 static bool make_planes(pass_context *c, error *e)
@@ -67,6 +58,9 @@ static bool make_planes(pass_context *c, error *e)
         put(blocks[i].half_size, v3(p->half[0], p->half[1], c->planes.room), 0);
         for (int y = 0; y < PLANE_CELLS; y++) blocks[i].cells[y / 2] |= (unsigned)p->cells[y] << 16 * (y & 1);
     }
+    for (int i = 0; i < c->planes.count; i++)
+        log_info(c->log, "plane %d: %.1f %% of the surfaces, %.3g x %.3g scene units", i + 1, 100.0 * c->planes.planes[i].share,
+                 2.0 * c->planes.planes[i].half[0], 2.0 * c->planes.planes[i].half[1]);
     c->plane_uniforms = gpu_uniforms_make(sizeof blocks);
     gpu_uniforms_set(c->plane_uniforms, 2, blocks, sizeof blocks);
     return true;
@@ -83,7 +77,7 @@ static bool make_sunless(pass_context *c, error *e)
     if (!sun_split(c->env, c->threads, &l->suns, &rest, c->log, e)) return false;
     l->ready = true;
     if (l->suns.count == 0) return true;
-    log_info(c->log, "environment: %d small bright source%s of its own", l->suns.count, l->suns.count > 1 ? "s, each" : "");
+    log_info(c->log, "environment: %d small bright source%s treated apart", l->suns.count, l->suns.count > 1 ? "s are" : " is");
     bool ok = pass_upload_environment(c->g, &rest, &l->map, e);
     environment_free(&rest);
     return ok;
@@ -178,5 +172,6 @@ bool pass_arc_bounce(pass_context *c, error *e)
     params.exitant = exitant;
     if (!light_planes(c, &params, sender, albedo, e) || !pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e)) return false;
     const pass_binding bindings[] = {{3, &c->indirect, GL_WRITE_ONLY}, {4, sender, GL_READ_ONLY}, {5, albedo, GL_READ_ONLY}};
-    return pass_run(c, "arc", with_planes(c, "RUNS 1\nBOUNCE 1\n", buf, sizeof buf), &params, sizeof params, bindings, 3, false, e);
+    return pass_run(c, "arc", with_planes(c, "RUNS 1\nBOUNCE 1\n", buf, sizeof buf), &params, sizeof params, bindings, 3, false,
+                    e);
 }

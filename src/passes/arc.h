@@ -11,7 +11,6 @@ typedef struct arc_params {
     float spacing, tolerance, level, strength;
     int suns, exitant, unused[2];
     float sun_direction[4][4], sun_light[4][4];
-    float test[4];
 } arc_params;
 
 // Slices and steps a side for a number of samples = slices x 2 x steps, with about twice as many steps as slices.

@@ -4,6 +4,20 @@
 
 const method methods[] = {
     {
+        .name = "arc",
+        .summary = "arcs blocked by runs of connected surface, of a thickness taken from their width, in slices around the view "
+                   "vector; large planes stand in for what the camera does not see",
+        .weighting = "cosine",
+        .reach = "surfaces within the radius; for light and bounce at any distance",
+        .blind = "hidden and off-screen surfaces that are not on a large visible plane; the back of what it sees is a guess",
+        .samples = 64,
+        .blur = 2,
+        .thickness = 0.3,
+        .fills_radiance = true,
+        .bounce = "arc",
+        .run = pass_arc,
+    },
+    {
         .name = "ssdo",
         .summary = "screen-space directional occlusion (Ritschel, Grosch, Seidel 2009): a point on each hemisphere direction",
         .weighting = "cosine",
@@ -70,19 +84,6 @@ const method methods[] = {
         .run = pass_s3ho,
     },
     {
-        .name = "arc",
-        .summary = "arcs blocked by runs of connected surface in slices around the view vector",
-        .weighting = "cosine",
-        .reach = "surfaces within the radius",
-        .blind = "what neither the camera sees nor a plane continues",
-        .samples = 256,
-        .blur = 2,
-        .thickness = 0.3,
-        .fills_radiance = true,
-        .bounce = "arc",
-        .run = pass_arc,
-    },
-    {
         .name = "gtao",
         .summary = "horizons in slices around the view vector (Jimenez et al. 2016)",
         .weighting = "cosine",
@@ -118,4 +119,4 @@ const method *method_find(const char *name)
     return NULL;
 }
 
-const char *method_names(void) { return "ssdo, alchemy, hemisphere, hbao, s3ho, arc, gtao, bitmask"; }
+const char *method_names(void) { return "arc, ssdo, s3ho, alchemy, hemisphere, hbao, gtao, bitmask"; }

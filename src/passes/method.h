@@ -19,7 +19,7 @@ typedef struct method {
 
 extern const method methods[]; // ends with a NULL name
 const method *method_find(const char *name);
-const char *method_names(void); // "ssdo, alchemy"
+const char *method_names(void); // "arc, ssdo, ..."
 enum { METHOD_DEFAULT = 0 };    // index of the default row
 
 #endif

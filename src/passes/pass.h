@@ -39,6 +39,7 @@ typedef struct pass_settings {
     double scale, contrast;
     double env_level; // < 0: by solid angle
     double bounce_strength;
+    int vpl_count;
     mat3 world_from_camera; // to the world that the environment is fixed to
     int seed;
     bool planes; // let large planes stand in for what the camera does not see
@@ -122,6 +123,7 @@ bool pass_hemisphere(pass_context *c, error *e);  // -> occlusion
 bool pass_hbao(pass_context *c, error *e);        // -> occlusion
 bool pass_s3ho(pass_context *c, error *e);        // -> sh, occlusion, radiance, visibility
 bool pass_ssdo(pass_context *c, error *e);        // -> occlusion, radiance, visibility
+bool pass_vpl(pass_context *c, error *e);         // radiance or beauty, albedo -> indirect
 bool pass_ssdo_bounce(pass_context *c, error *e); // radiance or beauty, albedo -> indirect
 bool pass_blur(pass_context *c, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e); // in place; NULL = none
 bool pass_look(pass_context *c, gpu_image *scalar, error *e); // scale and contrast, in place

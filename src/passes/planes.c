@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
@@ -12,7 +11,7 @@ enum { SAMPLES = 4096, HYPOTHESES = 64, SCORED = 1024, REFINEMENTS = 2, TURNS = 
 static const double DISTANCE = 0.002;   // of the depth
 static const double COSINE = 0.9902681; // 8 degrees
 static const double SMALLEST = 0.02;    // share of the surfaces
-static const double CONTRADICTED = 0.3; // samples seen through a plane over samples on it: more refuse it
+static const double CONTRADICTED = 3.0; // samples seen through a plane over samples on it: more refuse it
 
 typedef struct surface {
     vec3 p, n;
@@ -78,7 +77,8 @@ static vec3 smallest_axis(double a[3][3])
             for (int q = p + 1; q < 3; q++) {
                 if (a[p][q] == 0.0) continue;
                 double theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-                double t = copysign(1.0, theta) / (fabs(theta) + sqrt(theta * theta + 1.0)), c = 1.0 / sqrt(t * t + 1.0), s = t * c;
+                double t = copysign(1.0, theta) / (fabs(theta) + sqrt(theta * theta + 1.0)), c = 1.0 / sqrt(t * t + 1.0),
+                       s = t * c;
                 for (int k = 0; k < 3; k++) {
                     double x = a[k][p], y = a[k][q];
                     a[k][p] = c * x - s * y, a[k][q] = s * x + c * y;
@@ -196,15 +196,15 @@ bool planes_find(const gbuffer *gb, plane_set *out, error *e)
     finder f = {.orthographic = gb->camera.kind == CAMERA_ORTHOGRAPHIC, .s = mem_zero(2 * SAMPLES, sizeof *f.s, e)};
     if (!f.s) return false;
     take_samples(gb, &f);
-    for (int tried = 0; tried < 2 * PLANES_MAX && out->count < PLANES_MAX && f.count > SMALLEST * f.total && f.count >= 8; tried++) {
+    for (int tried = 0; tried < 2 * PLANES_MAX && out->count < PLANES_MAX && f.count > SMALLEST * f.total && f.count >= 8;
+         tried++) {
         plane p = best_hypothesis(&f);
         for (int i = 0; i < REFINEMENTS; i++) refine(&f, &p);
         support(&f, &p);
         int n = take(&f, &p);
         if (n < SMALLEST * f.total || n == 0) break;
         int through = fill_cells(&f, &p);
-        if (getenv("SHOWPLANES")) fprintf(stderr, " [%d n %d through %d]", n * 1000 / f.total, n, through);
-        if (through > (getenv("THRU") ? atof(getenv("THRU")) : CONTRADICTED) * n) continue;
+        if (through > CONTRADICTED * n) continue;
         p.share = (double)n / f.total;
         out->planes[out->count++] = p;
     }

@@ -10,9 +10,10 @@
 
 enum { PLANES_MAX = 12, PLANE_CELLS = 16 };
 
-// normal . x = offset in camera space; the normal is unit and faces the eye. The support is the rectangle of least area that holds
-// all samples: |axis[i] . x - centre[i]| <= half[i], the axes unit and perpendicular to the normal. It is divided into PLANE_CELLS x
-// PLANE_CELLS cells; bit x of row y says that the picture does not show the plane to be absent there (a hole, the corner beside a disc).
+// normal . x = offset in camera space; the normal is unit and faces the eye. The support is the rectangle of least area that
+// holds all samples: |axis[i] . x - centre[i]| <= half[i], the axes unit and perpendicular to the normal. It is divided into
+// PLANE_CELLS x PLANE_CELLS cells; bit x of row y says that the picture does not show the plane to be absent there (a hole, the
+// corner beside a disc).
 typedef struct plane {
     vec3 normal, axis[2];
     double offset, centre[2], half[2];

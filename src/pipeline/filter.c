@@ -11,6 +11,7 @@
 static bool (*bounce_of(const plan *p))(pass_context *, error *)
 {
     const char *name = p->bounce_name ? p->bounce_name : p->method->bounce;
+    if (name && strcmp(name, "vpl") == 0) return pass_vpl;
     return name && strcmp(name, "arc") == 0 ? pass_arc_bounce : pass_ssdo_bounce;
 }
 
@@ -22,7 +23,8 @@ static bool run_passes(pass_context *c, const plan *p, error *e)
     if (p->look && c->visibility.id && !pass_look(c, &c->visibility, e)) return false;
     if (p->irradiance && !pass_irradiance(c, e)) return false;
     if (p->bounce && !bounce_of(p)(c, e)) return false;
-    if (p->bounce && p->blur && !pass_blur(c, NULL, NULL, &c->indirect, e)) return false;
+    // The virtual lights are the same for all pixels: no noise. A method that filters itself does not filter the bounce.
+    if (p->bounce && c->set.blur > 0 && bounce_of(p) != pass_vpl && !pass_blur(c, NULL, NULL, &c->indirect, e)) return false;
     if (p->edges && c->coverage.id && !pass_edges(c, e)) return false;
     if (p->specular && !pass_specular(c, e)) return false;
     if (p->depthmask && !pass_depthmask(c, e)) return false;

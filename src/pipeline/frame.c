@@ -170,6 +170,12 @@ static mat3 world_from_camera(const job *j, const frame_result *r)
 // composite.comp: 1 the beauty, 2 the environment, 0 nothing.
 static int background_of(bool beauty, bool sky) { return beauty ? 1 : sky ? 2 : 0; }
 
+// A quarter of the method's own samples for a draft, four times as many for high quality.
+static int samples_at(const method *m, int quality)
+{
+    return quality < 0 ? m->samples / 4 : quality > 0 ? m->samples * 4 : m->samples;
+}
+
 static pass_settings settings_of(const job *j, const frame_result *r)
 {
     const options *o = j->o;
@@ -179,7 +185,9 @@ static pass_settings settings_of(const job *j, const frame_result *r)
     return (pass_settings){
         .radius = radius,
         .thickness = share * radius,
-        .samples = o->samples > 0 ? o->samples : m->samples,
+        .thickness_fixed = o->thickness >= 0.0,
+        .planes = !o->no_planes,
+        .samples = o->samples > 0 ? o->samples : samples_at(m, o->quality),
         .angle_bias = o->angle_bias,
         .sh_sigma = o->sh_sigma,
         .blur = o->blur < 0 ? m->blur : o->blur,
@@ -187,6 +195,7 @@ static pass_settings settings_of(const job *j, const frame_result *r)
         .contrast = o->contrast,
         .env_level = o->env_lod,
         .bounce_strength = o->bounce_strength,
+        .vpl_count = o->vpl_count,
         .world_from_camera = world_from_camera(j, r),
         .amount = o->amount,
         .depthmask_strength = o->depthmask_strength,

@@ -43,7 +43,7 @@ static const char *bounce_of(const plan *p, const options *o)
 
 static bool drop_impossible(plan *p, const options *o, const exr_file *file, const inputs *in, log_t *log, error *e)
 {
-    const char *no_bounce = o->bounce ? "--bounce none" : "this method has no bounce of its own; --bounce ssdo adds one";
+    const char *no_bounce = o->bounce ? "--bounce none" : "this method has no bounce of its own; --bounce ssdo or vpl adds one";
     if (!bounce_of(p, o) && !cannot(p, o, file, LAYER_INDIRECT, NULL, no_bounce, log, e)) return false;
     const char *no_albedo = "no albedo channel was found; name it with --albedo";
     if (p->relight && !in->albedo &&

@@ -140,10 +140,14 @@ static bool do_scene(rig *r, bench_results *b, bench_cell *cells, int s, int rou
 }
 
 // References are made before anything is timed: they would only heat the machine.
-static bool prepare_references(const bench_results *b, const char *cache, error *e)
+static bool prepare_references(const bench_results *b, const char *cache, double start, error *e)
 {
-    for (int s = 0; s < b->scene_count; s++)
+    for (int s = 0; s < b->scene_count; s++) {
+        char text[128];
         for (int i = 0; i < b->row_count; i++) free(bench_reference(&b->scenes[s], &b->rows[i], cache, e));
+        snprintf(text, sizeof text, "references of %s", b->scenes[s].s.name);
+        say(start, text);
+    }
     return e->code == ERR_NONE;
 }
 
@@ -229,8 +233,7 @@ static bool bench(const arguments *a, error *e)
     if (ok) {
         b.row_count = bench_rows(rows, BENCH_ROWS, b.alchemy_scale, b.alchemy_contrast);
         b.cells = cells = mem_zero((size_t)b.row_count * (size_t)b.scene_count, sizeof *cells, e);
-        ok = cells && prepare_references(&b, a->cache, e);
-        say(start, "references");
+        ok = cells && prepare_references(&b, a->cache, start, e);
     }
     ok = ok && do_rounds(&r, &b, cells, a->cache, start, e);
     ok = ok && measure_empty(&r, fullest(scenes, b.scene_count), &b.empty_ratio, e);

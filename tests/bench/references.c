@@ -7,7 +7,7 @@
 #include "bench.h"
 
 // Points of the references' quadratures: enough that what is left is well below the error of 1024 samples.
-enum { ELEVATIONS = 24, AZIMUTHS = 36, DISTANCES = 16, DISC = 72, SLICES = 64 };
+enum { ELEVATIONS = 24, AZIMUTHS = 36, DISTANCES = 12, DISC = 64, KERNEL = 20, DIRECTIONS = 48, STEPS = 128, SLICES = 48 };
 
 typedef enum reference_kind {
     REF_NONE,
@@ -52,10 +52,10 @@ static bool one_pixel(void *context, size_t i, int worker)
     if (j->kind == REF_SSDO) j->out[i] = reference_ssdo(l, p, &so).occlusion;
     if (j->kind == REF_ALCHEMY) j->out[i] = reference_alchemy(l, p, &ao);
     if (j->kind == REF_HORIZON) j->out[i] = reference_horizon(l, p, &co);
-    reference_hemisphere_options ho = {
-        .radius = j->radius, .elevations = ELEVATIONS, .azimuths = ELEVATIONS, .distances = ELEVATIONS};
+    reference_hemisphere_options ho = {.radius = j->radius, .elevations = KERNEL, .azimuths = KERNEL, .distances = KERNEL};
+    reference_hbao_options bo = {.radius = j->radius, .directions = DIRECTIONS, .steps = STEPS};
     if (j->kind == REF_HEMISPHERE) j->out[i] = reference_hemisphere(l, p, &ho);
-    if (j->kind == REF_HBAO) j->out[i] = fmax(0.0, reference_hbao(l, p, &(reference_hbao_options){.radius = j->radius}));
+    if (j->kind == REF_HBAO) j->out[i] = fmax(0.0, reference_hbao(l, p, &bo));
     if (j->kind == REF_BITMASK) j->out[i] = reference_bitmask(l, p, &co);
     return true;
 }

@@ -30,6 +30,7 @@ pass_settings rig_settings(const method *m, double radius)
                            .contrast = 1.0,
                            .env_level = -1.0,
                            .bounce_strength = 1.0,
+                           .vpl_count = 256,
                            .amount = 1.0,
                            .relight = true};
 }
@@ -48,6 +49,7 @@ bool rig_run(rig *r, const gbuffer *gb, const method *m, const pass_settings *se
                        .blur = set->blur > 0 && !m->fills_sh,
                        .look = set->contrast != 1.0 || set->scale != 1.0 || !m->fills_radiance,
                        .depthmask = layers & 1u << LAYER_DEPTHMASK,
+                       .bounce_name = r->options.bounce,
                        .bounce = bounce};
     return filter_frame(&r->job, out, e);
 }

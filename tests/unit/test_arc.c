@@ -14,7 +14,7 @@
 #include "scene_picture.h"
 #include "truth.h"
 
-enum { PIXELS = 300, WIDTH = 160, HEIGHT = 110 };
+enum { PIXELS = 300, WIDTH = 320, HEIGHT = 220 };
 
 static void must(bool ok, const error *e)
 {
@@ -115,8 +115,190 @@ static void bitmask_converges(void **state)
     }
 }
 
+// --- Closed forms ---
+
+// Mean occlusion of arc over the pixels around the scene's point, as far as they lie on the ground.
+static double at_point(const scene *s, double radius, const char *name, double thickness, int samples)
+{
+    static rig r;
+    error e = {0};
+    must(rig_open(&r, NULL, &e), &e);
+    view v = view_perspective(384, 288, 40.0, 1.0);
+    view_scene(&v, s);
+    gbuffer gb;
+    frame_result out;
+    must(scene_gbuffer(s, &v, &gb, &e), &e);
+    pass_settings set = rig_settings(method_find(name), radius);
+    set.samples = samples;
+    set.thickness = thickness;
+    must(rig_run(&r, &gb, method_find(name), &set, 1 << LAYER_OCCLUSION, &out, &e), &e);
+    double x, y, sum = 0.0;
+    assert_true(camera_project(&gb.camera, camera_from_world(&gb.camera, s->point), &x, &y));
+    for (int k = 0; k < 25; k++) sum += (double)out.layers[LAYER_OCCLUSION][((int)y + k / 5 - 2) * gb.width + (int)x + k % 5 - 2];
+    rig_free_result(&out);
+    gbuffer_free(&gb);
+    rig_close(&r);
+    return sum / 25.0;
+}
+
+static void agrees(const char *what, double got, double wanted, double tolerance)
+{
+    if (!(fabs(got - wanted) <= tolerance)) fail_msg("%s: got %.4f, wanted %.4f within %g", what, got, wanted, tolerance);
+}
+
+static void arc_agrees_with_closed_forms(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"arc", "gtao"};
+    for (int i = 0; i < 2; i++) {
+        scene s;
+        for (double a = 60.0; a < 130.0; a += 30.0) {
+            scene_wall(&s, a, 0.3);
+            agrees("wall with cutoff", at_point(&s, 1.0, names[i], 0.5, 4096), truth_wall_cutoff(a * M_PI / 180.0, 0.3, 1.0),
+                   0.01);
+        }
+        for (double x = 0.1; x < 1.1; x += 0.3) {
+            scene_corner(&s, x);
+            agrees("corner with cutoff", at_point(&s, 1.0, names[i], 0.5, 4096), truth_corner(x, 1.0), 0.01);
+        }
+    }
+    scene s;
+    scene_slit(&s, 0.4, 0.7);
+    agrees("slit", at_point(&s, 10.0, "arc", 5.0, 4096), truth_slit(0.4, 0.7, 0.0), 0.02);
+}
+
+// --- Planes ---
+
+static void planes_are_found_where_they_are(void **state)
+{
+    (void)state;
+    scene s;
+    scene_corner(&s, 0.5);
+    view v = view_perspective(200, 150, 50.0, 1.0);
+    view_scene(&v, &s);
+    gbuffer gb;
+    error e = {0};
+    must(scene_gbuffer(&s, &v, &gb, &e), &e);
+    plane_set found, again;
+    must(planes_find(&gb, &found, &e) && planes_find(&gb, &again, &e), &e);
+    assert_int_equal(found.count, 2);
+    assert_memory_equal(&found, &again, sizeof found);
+    const vec3 wanted[2] = {{0, 0, 1}, {0, -1, 0}}; // ground and wall, in either order
+    for (int k = 0; k < 2; k++) {
+        double best = -1.0, share = 0.0;
+        for (int i = 0; i < 2; i++) {
+            vec3 n = m3_apply(gb.camera.world_from_camera, found.planes[i].normal);
+            best = fmax(best, v3_dot(n, wanted[k]));
+            share += found.planes[i].share;
+        }
+        assert_true(best > 1.0 - 1e-6);
+        assert_true(share > 0.99);
+    }
+    gbuffer_free(&gb);
+}
+
+// A box on the ground, the camera above it: from the far side of the ground nothing of the box's back is seen, and nothing but
+// the ground is a large plane. With a wall that the box hides in part, the wall's plane must darken what it may darken only.
+static void planes_never_touch_an_empty_plane(void **state)
+{
+    (void)state;
+    rig r;
+    error e = {0};
+    must(rig_open(&r, NULL, &e), &e);
+    for (double tilt = 0.0; tilt < 89.0; tilt += 22.0) {
+        scene s = {0};
+        scene_tilted_plane(&s, tilt, 10.0);
+        view v = view_perspective(96, 64, 60.0, 1.0);
+        gbuffer gb;
+        frame_result out;
+        must(scene_gbuffer(&s, &v, &gb, &e), &e);
+        pass_settings set = rig_settings(method_find("arc"), 5.0);
+        set.planes = true;
+        must(rig_run(&r, &gb, method_find("arc"), &set, 1 << LAYER_OCCLUSION, &out, &e), &e);
+        for (int i = 0; i < gb.width * gb.height; i++) assert_true(out.layers[LAYER_OCCLUSION][i] == 1.0f);
+        rig_free_result(&out);
+        gbuffer_free(&gb);
+    }
+    rig_close(&r);
+}
+
+// The ground between the viewer and a low screen-filling wall: what the frame cuts off, the wall's plane gives back.
+static void a_plane_goes_on_beyond_the_frame(void **state)
+{
+    (void)state;
+    scene s;
+    scene_corner(&s, 0.3);
+    view v = view_perspective(160, 120, 40.0, 1.0);
+    view_look(&v, v3(0, -1.0, 2.0), v3(0, -0.3, 0), 0.0); // looks down: only a strip of the wall is inside
+    rig r;
+    error e = {0};
+    must(rig_open(&r, NULL, &e), &e);
+    gbuffer gb;
+    must(scene_gbuffer(&s, &v, &gb, &e), &e);
+    double x, y, seen[2];
+    assert_true(camera_project(&gb.camera, camera_from_world(&gb.camera, v3(0, -0.3, 0)), &x, &y));
+    for (int planes = 0; planes < 2; planes++) {
+        frame_result out;
+        pass_settings set = rig_settings(method_find("arc"), 3.0);
+        set.planes = planes;
+        set.samples = 1024;
+        must(rig_run(&r, &gb, method_find("arc"), &set, 1 << LAYER_OCCLUSION, &out, &e), &e);
+        seen[planes] = (double)out.layers[LAYER_OCCLUSION][(int)y * gb.width + (int)x];
+        rig_free_result(&out);
+    }
+    double truth = truth_corner(0.3, 3.0);
+    print_message("beyond the frame: without planes %.3f, with %.3f, truth %.3f\n", seen[0], seen[1], truth);
+    assert_true(fabs(seen[1] - truth) < 0.03);
+    assert_true(fabs(seen[1] - truth) <= fabs(seen[0] - truth));
+    gbuffer_free(&gb);
+    rig_close(&r);
+}
+
+// --- Light ---
+
+// The bounce of arc: bounded by what is blocked times the brightest sender, for any number of samples, also at a corner.
+static void bounce_is_bounded(void **state)
+{
+    (void)state;
+    rig r;
+    error e = {0};
+    must(rig_open(&r, &(env_options){.up_z = true, .scale = 1.0}, &e), &e);
+    scene s;
+    scene_corner(&s, 0.01);
+    view v = view_perspective(96, 72, 50.0, 1.0);
+    view_scene(&v, &s);
+    gbuffer gb;
+    must(scene_gbuffer(&s, &v, &gb, &e), &e);
+    for (int n = 8; n <= 2048; n *= 4)
+        for (int planes = 0; planes < 2; planes++) {
+            frame_result out;
+            pass_settings set = rig_settings(method_find("arc"), s.radius);
+            set.samples = n;
+            set.planes = planes;
+            must(rig_run(&r, &gb, method_find("arc"), &set, 1 << LAYER_RADIANCE | 1 << LAYER_INDIRECT, &out, &e), &e);
+            double most = 0.0;
+            for (int i = 0; i < 3 * gb.width * gb.height; i++) {
+                double direct = (double)out.layers[LAYER_RADIANCE][i], indirect = (double)out.layers[LAYER_INDIRECT][i];
+                if (direct + indirect > 1.0 + 1e-5) fail_msg("N=%d: %.6f + %.6f in a white sky", n, direct, indirect);
+                most = fmax(most, indirect);
+            }
+            assert_true(most > 0.05);
+            rig_free_result(&out);
+        }
+    gbuffer_free(&gb);
+    rig_close(&r);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(horizon_converges), cmocka_unit_test(bitmask_converges)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(horizon_converges),
+        cmocka_unit_test(bitmask_converges),
+        cmocka_unit_test(arc_agrees_with_closed_forms),
+        cmocka_unit_test(planes_are_found_where_they_are),
+        cmocka_unit_test(planes_never_touch_an_empty_plane),
+        cmocka_unit_test(a_plane_goes_on_beyond_the_frame),
+        cmocka_unit_test(bounce_is_bounded),
+    };
     return cmocka_run_group_tests_name("arc", tests, NULL, NULL);
 }

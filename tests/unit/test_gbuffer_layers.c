@@ -229,9 +229,10 @@ static void test_out_of_memory(void **state)
         render(&s);
         gbuffer_options options = {.need = NEED_COVERAGE | NEED_BEAUTY, .fov = way == 2 ? 47.925 : 0};
         gbuffer expected = built_with(NULL, options);
-        int failures = 0, n = 0;
-        for (int code = 1; code != 0; n++) {
-            code = outcome(n + 1, options, &expected);
+        // More than a build makes; some it survives (a thread that cannot be started), with the same result.
+        int failures = 0;
+        for (int n = 1; n <= 60; n++) {
+            int code = outcome(n, options, &expected);
             assert_true(code < 2);
             failures += code;
         }

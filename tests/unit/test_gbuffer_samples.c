@@ -45,6 +45,12 @@ static void check_camera(const gbuffer *g, struct json_object *truth, double sce
         assert_true(fabs(c->cx - number(truth, "principal_px", 0)) < 0.1);
         assert_true(fabs(c->cy - number(truth, "principal_px", 1)) < 0.1);
     }
+    // An orthographic eye may lie anywhere along and across the rays, but where it was must project to the centre.
+    double x, y;
+    if (!perspective) {
+        assert_true(camera_project(c, eye, &x, &y));
+        assert_true(fabs(x - number(truth, "principal_px", 0)) < 0.01 && fabs(y - number(truth, "principal_px", 1)) < 0.01);
+    }
     // Camera axes: Blender's are x right, y up, z backwards.
     struct json_object *rows;
     assert_true(json_object_object_get_ex(truth, "matrix_world", &rows));

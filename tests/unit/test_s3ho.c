@@ -194,7 +194,7 @@ static void open_plane_has_the_cosine_lobe(void **state)
             for (int c = 0; gb.depth[i] > 0.0f && c < 9; c++) {
                 double got = (double)out.layers[LAYER_SH_0 + c / 3][3 * i + c % 3], wanted = a[c < 1 ? 0 : c < 4 ? 1 : 2] * y[c];
                 bool border = i % 64 < 2 || i % 64 >= 62 || i / 64 < 2 || i / 64 >= 46; // parts of the pattern are missing there
-                assert_near(got, wanted, c == 0 ? 1e-6 : set.blur && !border ? 0.006 : 0.06);
+                assert_near(got, wanted, c == 0 ? 1e-6 : set.blur && !border ? 0.001 : 0.06);
             }
         }
         rig_free_result(&out);
@@ -268,6 +268,16 @@ static void stored_vector_relights(void **state)
     must(run_whole(&again, stored, output, "samples/sky_sun.exr", true, "occlusion,radiance", &e), &e);
     int n = direct.r.gb.width * direct.r.gb.height;
     double brightest = 0.0, darkest = 1.0;
+    int edges = 0; // pixels that hold a surface but whose centre missed it: they have their neighbour's vector
+    for (int i = 0; i < n; i++)
+        if (first.r.gb.depth[i] == 0.0f && first.r.gb.coverage[i] > 0.0f) {
+            for (int k = 0; k < 3; k++) {
+                const float *v = first.r.layers[LAYER_SH_0 + k] + 3 * i;
+                assert_true(v[0] != 0.0f || v[1] != 0.0f || v[2] != 0.0f);
+            }
+            edges++;
+        }
+    assert_true(edges > 0);
     for (int i = 0; i < n; i++) {
         assert_near((double)again.r.layers[LAYER_OCCLUSION][i], (double)direct.r.layers[LAYER_OCCLUSION][i], 1.0 / 1024.0);
         darkest = fmin(darkest, (double)again.r.layers[LAYER_OCCLUSION][i]);

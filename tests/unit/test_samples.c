@@ -38,6 +38,7 @@ static void run_sample(run *x, const sample *s)
     *x = (run){.s = *s};
     must(sample_load(&x->s, &e), &e);
     options_defaults(&x->o);
+    if (getenv("SSDO_METHOD")) x->o.method = getenv("SSDO_METHOD");
     snprintf(x->output, sizeof x->output, "/tmp/ssdo_sample_%d.exr", (int)getpid());
     x->o.env = x->s.env;
     x->o.env_rotate = x->s.env_rotate;
