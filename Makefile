@@ -15,7 +15,7 @@ endif
 # Debian packages: what the build needs, what `make check` needs on top.
 DEPS_BUILD := gcc g++ pkg-config libopenexr-dev libopenimageio-dev libopencolorio-dev libegl-dev libegl-mesa0 libgl1-mesa-dri libepoxy-dev \
               libdeflate-dev libjson-c-dev
-DEPS_CHECK := libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender libembree-dev man-db python3-minimal
+DEPS_CHECK := libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender libembree-dev man-db
 DEPS_BENCH := gnuplot-nox
 
 PKGS       := OpenEXR epoxy egl libdeflate json-c
@@ -50,6 +50,7 @@ help:
 	@echo 'make demo     install what is missing, build, filter a sample, make a contact sheet'
 	@echo 'make check    install what is missing, build, run all tests'
 	@echo 'make bench    error against time of every method (bench-unseen: on scenes rendered afresh)'
+	@echo 'make bench-frame   cost of a whole frame beside copying its file'
 	@echo 'make all | lint | format | install PREFIX= DESTDIR= | uninstall | clean'
 
 $(BIN): $(BUILD)/src/main.o $(BUILD)/libssdo.a
@@ -124,6 +125,14 @@ $(BUILD)/unseen/%/rendered:
 	@mkdir -p $(@D)
 	blender -b --factory-startup -P samples/render.py -- --all --out $(@D) --variant $* --size 480x270 --spp $(UNSEEN_SPP) >$(@D)/log
 	@touch $@
+
+# What a whole frame costs beside copying its file: BUILD/bench/frame.md.
+.PHONY: bench-frame
+bench-frame: deps-bench
+	@$(MAKE) $(JOBS) --no-print-directory all $(BUILD)/tests/bench/make_input $(BUILD)/tests/bench/measure $(BUILD)/tests/bench/core_copy
+	@sh tests/bench/frame.sh $(BUILD) $(ROUNDS)
+$(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(TESTLIB) $(BUILD)/libssdo.a
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
 
 # Which errors of 5 % in the shaders the tests see.
 mutate: unit
