@@ -97,7 +97,7 @@ Sectors march(Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter
     }
     // Beyond the frame the last run goes on along its own tangent.
     if (line.border < line.reach && run.alive && run.last_distance < R) {
-        vec2 facing = normalize(in_slice(s, run.normal) + vec2(0.0, 1e-20)), e = vec2(facing.y, -facing.x);
+        vec2 facing = normalize(vec2(dot(run.normal, s.tangent), dot(run.normal, s.up)) + vec2(0.0, 1e-20)), e = vec2(facing.y, -facing.x);
         vec2 ray = away(s, run.last);
         if (e.x * ray.y - e.y * ray.x > 0.0) e = -e; // outwards: away from the view ray, clockwise from V
         float b = dot(run.last, e);

@@ -7,7 +7,9 @@
 
 struct Side {
     vec3 tangent; // unit, outwards
-    vec3 normal;  // the receiver's, divided by the length of its projection: dot with it is y of the projected vector
+    vec3 up;      // unit: the receiver's normal projected into the slice
+    vec3 lift;    // the normal itself over the length of its projection: dot with it is y of a point, whose pixel may lie beside the
+                  // slice's line, such that its height over the tangent plane is kept; so an empty plane stays empty
     float cos_n, sin_n;
     float below;  // -F(n - pi/2)
     float scale;  // 1 / (cos n + n sin n)
@@ -30,7 +32,8 @@ Side side_of(vec3 V, vec3 outwards, vec3 N, float n, float inverse_length, float
     s.cos_n = cos(n);
     s.sin_n = sin(n);
     s.tangent = s.cos_n * outwards - s.sin_n * V;
-    s.normal = N * inverse_length;
+    s.up = s.cos_n * V + s.sin_n * outwards;
+    s.lift = N * inverse_length;
     s.below = 0.5 * (s.cos_n + (n - 0.5 * PI) * s.sin_n);
     s.scale = 1.0 / (s.cos_n + n * s.sin_n);
     s.eye = vec2(-s.sin_n, s.cos_n) * (is_orthographic() ? 1.0 : eye_distance);
@@ -46,7 +49,7 @@ float share(Side s, vec2 w) {
     return w.y * l <= GRAZING ? 1.0 : clamp(c, 0.0, 1.0);
 }
 
-vec2 in_slice(Side s, vec3 w) { return vec2(dot(w, s.tangent), dot(w, s.normal)); }
+vec2 in_slice(Side s, vec3 w) { return vec2(dot(w, s.tangent), dot(w, s.lift)); }
 
 // Unit vector from the eye through a point, on which the surface hides what is behind it.
 vec2 away(Side s, vec2 w) { return is_orthographic() ? -s.eye : normalize(w - s.eye); }

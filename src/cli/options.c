@@ -15,7 +15,7 @@
 void options_defaults(options *o)
 {
     *o = (options){
-        .method = "ssdo",
+        .method = "arc",
         .radius_unit = RADIUS_AUTO,
         .thickness = -1,
         .blur = -1,

@@ -80,7 +80,7 @@ typedef struct gpu_tiles {
     int occupied_count;
 } gpu_tiles;
 
-enum { GPU_GROUP = 8, GPU_TILE = 128 }; // a work group is GPU_GROUP^2 pixels
+enum { GPU_GROUP = 8, GPU_TILE = 64 }; // a work group is GPU_GROUP^2 pixels
 
 // A tile is occupied if any of its pixels has mask[i] != 0 or (coverage given) coverage[i] > 0.
 bool gpu_tiles_make(gpu_tiles *t, int width, int height, int size, const float *mask, const float *coverage, error *e);

@@ -47,7 +47,10 @@ static double seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static void say(double start, const char *what) { fprintf(stderr, "bench: %4.0f s  %s\n", seconds() - start, what); }
+static void say(double start, const char *what)
+{
+    fprintf(stderr, "bench: %4.0f s (CPU %.0f s)  %s\n", seconds() - start, (double)clock() / CLOCKS_PER_SEC, what);
+}
 
 // Folders of a path, one after the other.
 static void make_folder(const char *path)
@@ -96,7 +99,11 @@ static bool warm_up(rig *r, const bench_results *b, const bench_scene *s, error 
 }
 
 // All layers in one run tell the time of occlusion alone where light is but a multiplication.
-static bool tells_both(const bench_row *row) { return !row->m->fills_radiance && !(bench_layers(row) & 1u << LAYER_INDIRECT); }
+static bool tells_both(const bench_row *row)
+{
+    bool scalar = !row->m->fills_radiance && !(bench_layers(row) & 1u << LAYER_INDIRECT);
+    return scalar || bench_layers(row) == 1u << LAYER_OCCLUSION;
+}
 
 // The first round also measures the errors. The long rows are timed only there.
 static bool do_row(rig *r, const bench_scene *s, const bench_row *row, bench_cell *cell, int round, const char *cache, error *e)

@@ -80,7 +80,7 @@ typedef struct bench_cell { // a row on a scene
 } bench_cell;
 
 pass_settings bench_settings(const bench_row *row, const bench_scene *b);
-// The layers a row can make.
+// The layers a row makes: with more than BENCH_LONG samples occlusion alone.
 unsigned bench_layers(const bench_row *row);
 // `all`: time of everything; `direct`: of all but the multiplication that makes radiance of a scalar. Both may be NULL.
 bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned layers, frame_result *out, bench_time *direct,

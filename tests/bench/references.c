@@ -30,7 +30,7 @@ typedef struct reference_job {
 static reference_kind kind_of(const bench_row *row)
 {
     if (row->kind != ROW_METHOD) return REF_NONE;
-    if (strcmp(row->m->name, "ssdo") == 0) return REF_SSDO;
+    if (strcmp(row->m->name, "ssdo") == 0 || strcmp(row->m->name, "s3ho") == 0) return REF_SSDO; // the same point test
     if (strcmp(row->m->name, "alchemy") == 0) return REF_ALCHEMY;
     if (strcmp(row->m->name, "gtao") == 0) return REF_HORIZON;
     if (strcmp(row->m->name, "bitmask") == 0) return REF_BITMASK;

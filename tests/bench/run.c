@@ -20,6 +20,7 @@ pass_settings bench_settings(const bench_row *row, const bench_scene *b)
 unsigned bench_layers(const bench_row *row)
 {
     if (row->kind != ROW_METHOD) return 0;
+    if (row->samples > BENCH_LONG) return 1u << LAYER_OCCLUSION;
     return 1u << LAYER_OCCLUSION | 1u << LAYER_RADIANCE | (row->m->bounce ? 1u << LAYER_INDIRECT : 0u);
 }
 
@@ -133,10 +134,11 @@ bool bench_measure(rig *r, const bench_scene *b, const bench_row *row, const cha
     const sample *s = &b->s;
     unsigned layers = bench_layers(row);
     if (!bench_run(r, b, row, layers, &f, &cell->direct[0], &cell->all[0], e)) return false;
-    cell->has_occlusion = cell->has_radiance = true;
+    cell->has_occlusion = true;
+    cell->has_radiance = layers & 1u << LAYER_RADIANCE;
     cell->has_indirect = layers & 1u << LAYER_INDIRECT;
     cell->occlusion = sample_score(s, f.layers[LAYER_OCCLUSION], s->ao[0], s->ao[1], 1);
-    cell->radiance = sample_score(s, f.layers[LAYER_RADIANCE], s->direct[0], s->direct[1], 3);
+    if (cell->has_radiance) cell->radiance = sample_score(s, f.layers[LAYER_RADIANCE], s->direct[0], s->direct[1], 3);
     if (cell->has_indirect) cell->indirect = sample_score(s, f.layers[LAYER_INDIRECT], s->indirect[0], s->indirect[1], 3);
     double *expected = bench_reference(b, row, cache, e);
     if (expected) compare(b, f.layers[LAYER_OCCLUSION], expected, cell);

@@ -27,6 +27,7 @@ bench_time bench_cell_time(const bench_results *r, int row, int which, bool all)
 {
     const bench_cell *c = &r->cells[row * r->scene_count + which];
     const bench_time *t = all ? c->all : c->direct;
+    if (all && !c->has_radiance) return (bench_time){NAN, NAN};
     double cpu[BENCH_ROUNDS], wall[BENCH_ROUNDS];
     for (int i = 0; i < c->rounds; i++) cpu[i] = t[i].cpu, wall[i] = t[i].wall;
     if (c->rounds == 0 || which >= r->timed_count) return (bench_time){NAN, NAN};
@@ -38,6 +39,7 @@ double bench_cell_yards(const bench_results *r, int row, int which, bool all)
     const bench_cell *c = &r->cells[row * r->scene_count + which];
     const bench_time *t = all ? c->all : c->direct;
     double ratio[BENCH_ROUNDS];
+    if (all && !c->has_radiance) return NAN;
     for (int i = 0; i < c->rounds; i++) ratio[i] = t[i].cpu / r->yard[which][c->round[i]].cpu;
     return c->rounds && which < r->timed_count ? bench_median(ratio, c->rounds) : NAN;
 }

@@ -97,7 +97,7 @@ static void horizon_converges(void **state)
         fixture_make(&f, scene_clutter, fov);
         reference_slice_options o = {.radius = f.s.radius, .slices = 64};
         for (int i = 0; i < f.count; i++) f.expected[i] = reference_horizon(&f.l, f.pixels[i], &o);
-        converges(&f, "gtao", INFINITY, 0.02, 0.005);
+        converges(&f, "gtao", INFINITY, 0.025, 0.008);
         fixture_free(&f);
     }
 }
@@ -110,7 +110,7 @@ static void bitmask_converges(void **state)
         fixture_make(&f, scene_clutter, 50.0);
         reference_slice_options o = {.radius = f.s.radius, .thickness = share * f.s.radius, .slices = 64};
         for (int i = 0; i < f.count; i++) f.expected[i] = reference_bitmask(&f.l, f.pixels[i], &o);
-        converges(&f, "bitmask", o.thickness, 0.02, 0.005);
+        converges(&f, "bitmask", o.thickness, 0.025, 0.008);
         fixture_free(&f);
     }
 }

@@ -57,7 +57,7 @@ static void defaults_are_the_documented_ones(void **state)
     assert_string_equal(o.inputs[0], "in.exr");
     assert_string_equal(o.output, "out.exr");
     assert_null(o.layers);
-    assert_string_equal(o.method, "ssdo");
+    assert_string_equal(o.method, "arc");
     assert_int_equal(o.radius_unit, RADIUS_AUTO);
     assert_true(o.thickness < 0 && o.env_lod < 0);
     assert_int_equal(o.blur, -1);

@@ -16,7 +16,7 @@
 #include "pipeline/report.h"
 #include "scene_picture.h"
 
-enum { WIDTH = 300, HEIGHT = 140 }; // 3 x 2 tiles
+enum { WIDTH = 150, HEIGHT = 70 }; // 3 x 2 tiles
 
 static const char *SKY = "samples/sky_soft.exr";
 
