@@ -69,20 +69,18 @@ void main() {
         float phi = PI * (float(i) + turn.x) / float(params.slices);
         vec2 noise = pixel_hash(uvec2(p) + uvec2(seed + 131u * uint(i + 1), 17u));
         vec3 across = cos(phi) * around[0] + sin(phi) * around[1];
-        float up = dot(N, V), sideways = dot(N, across), squared = max(up * up + sideways * sideways, 1e-12);
-        float inverse_length = inversesqrt(squared), n = atan(sideways, up);
-        Side right = side_of(V, across, N, n, inverse_length, eye_distance), left = side_of(V, -across, N, -n, inverse_length, eye_distance);
-        Line line = line_of(P, V, across, origin), back = line_of(P, V, -across, origin);
-        Sectors slots = march(right, line, P, N, noise.x, noise.y);
-        add_mirrored(slots, march(left, back, P, N, 1.0 - noise.x, 1.0 - noise.y));
+        float n, weight;
+        Side side = side_of(V, across, N, eye_distance, n, weight);
+        Line line = line_of(P, V, across, origin), back = reversed(line, P, V, across);
+        Sectors slots = march(side, line, P, N, noise.x, noise.y);
+        add_mirrored(slots, march(opposite(side, n), back, P, N, 1.0 - noise.x, 1.0 - noise.y));
 #ifdef PLANES
-        block_by_planes(slots, right, V, across, n, line, back, P, noise.y);
+        block_by_planes(slots, side, V, across, n, line, back, P, noise.y);
 #endif
-        float weight = sqrt(squared) * (cos(n) + n * sin(n));
         open += weight * (1.0 - sector_share(slots.blocked));
         all += weight;
 #ifdef LIGHT
-        add_sky(light, right, V, across, n, weight, slots.blocked, noise.y);
+        add_sky(light, side, V, across, n, weight, slots.blocked, noise.y);
 #endif
 #ifdef BOUNCE
         bounced += weight * slots.light;

@@ -34,15 +34,13 @@ void add_suns(inout Light light, vec3 P, vec3 N, vec3 V, float eye_distance, vec
         vec3 aside = S - along * V;
         float sine = length(aside);
         vec3 across = sine > 1e-4 ? aside / sine : tangent_frame(V)[0];
-        float up = dot(N, V), sideways = dot(N, across), n = atan(sideways, up);
-        float inverse_length = inversesqrt(max(up * up + sideways * sideways, 1e-12));
-        Side s = side_of(V, across, N, n, inverse_length, eye_distance);
+        float n, weight;
+        Side s = side_of(V, across, N, eye_distance, n, weight);
         float place = min(share_at(s, atan(sine, along)), 0.9999) * 64.0, jitter = fract(place);
         Line line = line_of(P, V, across, origin);
         Sectors slots = march(s, line, P, N, step_jitter, jitter);
 #ifdef PLANES
-        Line back = line_of(P, V, -across, origin);
-        block_by_planes(slots, s, V, across, n, line, back, P, jitter);
+        block_by_planes(slots, s, V, across, n, line, reversed(line, P, V, across), P, jitter);
 #endif
         int k = int(place);
         uint word = k < 32 ? slots.blocked.x : slots.blocked.y;

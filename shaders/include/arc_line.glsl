@@ -28,6 +28,14 @@ float ball_reach(vec3 P, vec3 V, vec3 across, vec2 origin) {
     return edge.z <= 1e-3 ? 1e9 : length(screen_of(edge) - origin);
 }
 
+// The line towards the other side.
+Line reversed(Line l, vec3 P, vec3 V, vec3 across) {
+    l.direction = -l.direction;
+    l.border = leaves_frame(l.origin, l.direction);
+    l.reach = ball_reach(P, V, -across, l.origin);
+    return l;
+}
+
 Line line_of(vec3 P, vec3 V, vec3 across, vec2 origin) {
     Line l;
     l.origin = origin;
@@ -37,8 +45,8 @@ Line line_of(vec3 P, vec3 V, vec3 across, vec2 origin) {
     return l;
 }
 
-// Distance of step i in pixels, at least a pixel beyond the step before.
+// Distance of step i in pixels: at the squares of an even spacing, and at least a pixel beyond the step before.
 float step_distance(int i, float jitter, float limit) {
     float u = (float(i) + jitter) / float(params.steps);
-    return max(limit * pow(u, params.spacing), float(i + 1));
+    return max(limit * u * u, float(i + 1));
 }

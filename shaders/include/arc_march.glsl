@@ -23,17 +23,9 @@ float thickness_of(Run r, bool ends, float step_size) {
     return r.starts && ends ? own : max(own, params.thickness);
 }
 
-// Share of the back of the rim.
-float back_share(Side s, vec2 rim, float thickness) {
-    vec2 ray = away(s, rim);
-    float b = dot(rim, ray);
-    float leaves = sqrt(max(b * b + params.radius * params.radius - dot(rim, rim), 0.0)) - b;
-    return share(s, rim + ray * min(thickness, max(leaves, 0.0)));
-}
-
 // Ends a run: all it blocks, as far as its samples have not done so already.
 void finish(inout Sectors slots, Side s, Run r, bool ends, float step_size, float jitter) {
-    float high = r.own ? 1.0 : max(r.high, back_share(s, r.rim, thickness_of(r, ends, step_size)));
+    float high = r.own ? 1.0 : max(r.high, share(s, r.rim + thickness_of(r, ends, step_size) * away(s, r.rim)));
     if (r.alive && r.low <= r.high) block(slots, sectors(r.low, high, jitter), r.light);
 }
 

@@ -6,12 +6,11 @@ layout(std140, binding = 1) uniform Params {
     int slices, steps;   // steps a side
     int seed;
     int planes;          // how many planes are in use
-    float spacing;       // exponent of the distances of the steps
     float tolerance;     // of a run, in footprints per pixel of step
     float level;
     float strength;
     int suns;
-    int exitant, unused0, unused1;
+    int exitant, unused0, unused1, unused2;
     vec4 sun_direction[4]; // camera space, unit
     vec4 sun_light[4];     // rgb: irradiance over pi of a surface that faces the sun
 } params;

@@ -26,17 +26,30 @@ float fast_acos(float x) {
 // Below this sine over the tangent plane nothing counts: rounding and half-float normals live there, and 1e-5 of the weight.
 const float GRAZING = 0.004;
 
-// One side of a slice; n is the angle of the projected normal towards this side.
-Side side_of(vec3 V, vec3 outwards, vec3 N, float n, float inverse_length, float eye_distance) {
+// The side of a slice towards a direction across V. Also the slice's weight |n_p| (cos n + n sin n) and n.
+Side side_of(vec3 V, vec3 outwards, vec3 N, float eye_distance, out float n, out float weight) {
     Side s;
-    s.cos_n = cos(n);
-    s.sin_n = sin(n);
+    float up = dot(N, V), sideways = dot(N, outwards), squared = max(up * up + sideways * sideways, 1e-12);
+    float inverse_length = inversesqrt(squared);
+    n = atan(sideways, up);
+    s.cos_n = up * inverse_length;
+    s.sin_n = sideways * inverse_length;
+    weight = squared * inverse_length * (s.cos_n + n * s.sin_n);
     s.tangent = s.cos_n * outwards - s.sin_n * V;
     s.up = s.cos_n * V + s.sin_n * outwards;
     s.lift = N * inverse_length;
     s.below = 0.5 * (s.cos_n + (n - 0.5 * PI) * s.sin_n);
     s.scale = 1.0 / (s.cos_n + n * s.sin_n);
     s.eye = vec2(-s.sin_n, s.cos_n) * (is_orthographic() ? 1.0 : eye_distance);
+    return s;
+}
+
+// The other side of the same slice.
+Side opposite(Side s, float n) {
+    s.tangent = -s.tangent;
+    s.sin_n = -s.sin_n;
+    s.below = 0.5 * (s.cos_n - (n + 0.5 * PI) * s.sin_n);
+    s.eye.x = -s.eye.x;
     return s;
 }
 

@@ -3,10 +3,9 @@
 #include <math.h>
 #include <stdio.h>
 
-static const float HUGE_LENGTH = 1e30f, NO_LIMIT = 1e15f;
-static const float KAPPA = 1.0f;     // a run is as thick as it is wide
-static const float SPACING = 2.0f;   // steps fall at the squares of an even spacing
-static const float TOLERANCE = 1.3f; // a run may turn by 52 degrees between two steps
+static const float HUGE_LENGTH = 1e15f; // its square is still a float
+static const float KAPPA = 1.0f;        // a run is as thick as it is wide
+static const float TOLERANCE = 1.3f;    // a run may turn by 52 degrees between two steps
 
 void arc_grid(int samples, int *slices, int *steps)
 {
@@ -25,7 +24,6 @@ arc_params arc_params_of(const pass_context *c)
         .fixed_thickness = s->thickness_fixed,
         .seed = s->seed,
         .planes = c->planes.count,
-        .spacing = SPACING,
         .tolerance = TOLERANCE,
         .level = (float)s->env_level,
         .strength = (float)s->bounce_strength,
@@ -117,7 +115,7 @@ static bool run_light(pass_context *c, error *e)
 {
     arc_params params = arc_params_of(c);
     char buf[128];
-    params.radius = NO_LIMIT;
+    params.radius = HUGE_LENGTH;
     if (!make_sunless(c, e)) return false;
     put_suns(c, &params);
     if (!pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e)) return false;
@@ -168,7 +166,7 @@ bool pass_arc_bounce(pass_context *c, error *e)
     char buf[128];
     if (!make_planes(c, e)) return false;
     arc_params params = arc_params_of(c);
-    params.radius = NO_LIMIT;
+    params.radius = HUGE_LENGTH;
     params.exitant = exitant;
     if (!light_planes(c, &params, sender, albedo, e) || !pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e)) return false;
     const pass_binding bindings[] = {{3, &c->indirect, GL_WRITE_ONLY}, {4, sender, GL_READ_ONLY}, {5, albedo, GL_READ_ONLY}};

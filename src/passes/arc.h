@@ -8,8 +8,8 @@ typedef struct arc_params {
     float radius, thickness, kappa;
     int fixed_thickness;
     int slices, steps, seed, planes;
-    float spacing, tolerance, level, strength;
-    int suns, exitant, unused[2];
+    float tolerance, level, strength;
+    int suns, exitant, unused[3];
     float sun_direction[4][4], sun_light[4][4];
 } arc_params;
 

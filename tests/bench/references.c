@@ -23,7 +23,7 @@ typedef struct reference_job {
     const bench_scene *b;
     const bench_row *row;
     reference_kind kind;
-    double radius, thickness;
+    double radius, thickness, bias;
     double *out;
 } reference_job;
 
@@ -53,7 +53,7 @@ static bool one_pixel(void *context, size_t i, int worker)
     if (j->kind == REF_ALCHEMY) j->out[i] = reference_alchemy(l, p, &ao);
     if (j->kind == REF_HORIZON) j->out[i] = reference_horizon(l, p, &co);
     reference_hemisphere_options ho = {.radius = j->radius, .elevations = KERNEL, .azimuths = KERNEL, .distances = KERNEL};
-    reference_hbao_options bo = {.radius = j->radius, .directions = DIRECTIONS, .steps = STEPS};
+    reference_hbao_options bo = {.radius = j->radius, .bias = j->bias, .directions = DIRECTIONS, .steps = STEPS};
     if (j->kind == REF_HEMISPHERE) j->out[i] = reference_hemisphere(l, p, &ho);
     if (j->kind == REF_HBAO) j->out[i] = fmax(0.0, reference_hbao(l, p, &bo));
     if (j->kind == REF_BITMASK) j->out[i] = reference_bitmask(l, p, &co);
@@ -67,7 +67,7 @@ static cache_key key_of(const reference_job *j)
     const gbuffer *gb = &j->b->gb;
     const camera *c = &gb->camera;
     size_t n = (size_t)gb->width * (size_t)gb->height;
-    double numbers[] = {j->kind, j->radius, j->thickness, c->kind, c->fx, c->fy, c->cx, c->cy, gb->width, gb->height};
+    double numbers[] = {j->kind, j->radius, j->thickness, j->bias, c->kind, c->fx, c->fy, c->cx, c->cy, gb->width, gb->height};
     cache_key k = cache_add(cache_start("reference"), numbers, sizeof numbers);
     for (size_t i = 0; i < sizeof sources / sizeof *sources; i++) k = cache_add_file(k, sources[i]);
     k = cache_add(k, gb->depth, n * sizeof(float));
@@ -79,7 +79,7 @@ double *bench_reference(const bench_scene *b, const bench_row *row, const char *
 {
     if (row->kind != ROW_METHOD) return NULL;
     pass_settings set = bench_settings(row, b);
-    reference_job j = {b, row, kind_of(row), set.radius, set.thickness, NULL};
+    reference_job j = {b, row, kind_of(row), set.radius, set.thickness, set.angle_bias * M_PI / 180.0, NULL};
     if (j.kind == REF_NONE) return NULL;
     if (j.kind != REF_SSDO && j.kind != REF_BITMASK) j.thickness = INFINITY; // the others have none
     size_t size = (size_t)b->pixel_count * sizeof *j.out;

@@ -7,7 +7,11 @@
 
 pass_settings bench_settings(const bench_row *row, const bench_scene *b)
 {
+    options o;
+    options_defaults(&o);
     pass_settings set = rig_settings(row->m, b->radius);
+    set.angle_bias = o.angle_bias;
+    set.sh_sigma = o.sh_sigma;
     set.thickness = (row->thickness < 0.0 ? row->m->thickness : row->thickness) * b->radius;
     set.samples = row->samples;
     set.blur = row->blur;
@@ -41,6 +45,7 @@ bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned laye
     r->job.env = b->env;
     r->job.env_image = b->env_image;
     r->job.env_loaded = true;
+    r->options.bounce = row->m->bounce;
     r->options.report = "timed"; // a report makes the passes wait and take their times
     bool ok = rig_run(r, &b->gb, row->m, &set, layers, out, e);
     r->job.env_loaded = false;

@@ -122,6 +122,41 @@ static void summary_table(FILE *f, const bench_results *r, int set, bool standar
         if (!standard || r->rows[i].standard) summary_row(f, &r->rows[i], &s[i]);
 }
 
+// Error of a method's blurred rows at a given time, between the two nearest (straight in the logarithms); NAN outside them.
+static double error_at(const bench_results *r, const bench_summary *s, const char *name, double yards)
+{
+    int low = -1, high = -1;
+    for (int i = 0; i < r->row_count; i++) {
+        if (r->rows[i].blur == 0 || strcmp(r->rows[i].name, name) != 0 || !isfinite(s[i].yards)) continue;
+        if (s[i].yards <= yards && (low < 0 || s[i].yards > s[low].yards)) low = i;
+        if (s[i].yards >= yards && (high < 0 || s[i].yards < s[high].yards)) high = i;
+    }
+    if (low < 0 || high < 0) return NAN;
+    if (low == high) return s[low].occlusion;
+    double f = log(yards / s[low].yards) / log(s[high].yards / s[low].yards);
+    return exp(log(s[low].occlusion) * (1.0 - f) + log(s[high].occlusion) * f);
+}
+
+static void equal_time(FILE *f, const bench_results *r)
+{
+    bench_summary s[BENCH_ROWS];
+    bench_summarise(r, SET_SAMPLES, s);
+    int shipped = -1;
+    for (int i = 0; i < r->row_count; i++)
+        if (shipped < 0 && r->rows[i].standard && r->rows[i].m == &methods[METHOD_DEFAULT]) shipped = i;
+    if (shipped < 0 || s[0].scenes == 0) return;
+    double yards = s[shipped].yards;
+    fprintf(f,
+            "\nOcclusion at the GL time of the default (%.1f yardsticks), with each method's blur, between its measured budgets:",
+            yards);
+    for (int i = 0; i < r->row_count; i++) {
+        const bench_row *row = &r->rows[i];
+        double v = row->kind == ROW_METHOD && row->standard ? error_at(r, s, row->name, yards) : NAN;
+        if (isfinite(v)) fprintf(f, " %s %.4f;", row->name, v);
+    }
+    fprintf(f, " methods whose budgets do not reach that time are left out.\n");
+}
+
 static void scene_table(FILE *f, const bench_results *r, int which)
 {
     const bench_scene *b = &r->scenes[which];
@@ -198,6 +233,7 @@ bool bench_write_markdown(const bench_results *r, const char *dir, error *e)
     if (!f) return false;
     legend(f, r);
     for (int set = SET_SAMPLES; set <= SET_GENERATED; set++) summary_table(f, r, set, true);
+    equal_time(f, r);
     for (int set = SET_SAMPLES; set <= SET_GENERATED; set++) summary_table(f, r, set, false);
     fprintf(f, "\n## Scene by scene\n");
     for (int s = 0; s < r->scene_count; s++) scene_table(f, r, s);

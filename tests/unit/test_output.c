@@ -263,10 +263,8 @@ static void own_layers_are_replaced(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sample_passes_through),
-        cmocka_unit_test(odd_values_pass_through),
-        cmocka_unit_test(amount_zero_is_the_beauty),
-        cmocka_unit_test(own_layers_are_replaced),
+        cmocka_unit_test(sample_passes_through),      cmocka_unit_test(odd_values_pass_through),
+        cmocka_unit_test(amount_zero_is_the_beauty),  cmocka_unit_test(own_layers_are_replaced),
         cmocka_unit_test(multipart_copies_the_input),
     };
     return cmocka_run_group_tests_name("output", tests, make_folder, remove_folder);
