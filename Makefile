@@ -38,7 +38,7 @@ OBJ      := $(SRC:%.c=$(BUILD)/%.o) $(BUILD)/shaders.o
 SHADERS  := $(wildcard shaders/*.comp shaders/*.frag shaders/*.vert)
 GLSL     := $(SHADERS) $(wildcard shaders/include/*.glsl)
 BIN      := $(BUILD)/ssdo-filter
-PLUGIN   := $(BUILD)/ssdo-images.so
+PLUGIN   := $(BUILD)/ssdo-images.so $(BUILD)/ssdo-colour.so
 UNIT     := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))
 TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
 
@@ -73,11 +73,13 @@ $(BUILD)/shaders.c: $(GLSL) shaders/embed.sh
 $(BUILD)/shaders.o: $(BUILD)/shaders.c src/gpu/shaders.h
 	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $<
 
-# OpenImageIO lives in a module of its own, opened on demand: linking it costs every run 290 ms.
-$(PLUGIN): $(wildcard src/plugin/*.cpp) $(wildcard src/plugin/*.h) | deps-stamp
+# OpenImageIO and OpenColorIO live in modules of their own, opened on demand: linking OpenImageIO costs every run 290 ms.
+$(BUILD)/ssdo-images.so: LIBRARY := OpenImageIO
+$(BUILD)/ssdo-colour.so: LIBRARY := OpenColorIO
+$(BUILD)/ssdo-%.so: src/plugin/%_shim.cpp src/plugin/%_abi.h | deps-stamp
 	@mkdir -p $(@D)
 	@echo "  c++  $@"
-	$(Q)$(CXX) $(ALL_CXXFLAGS) -shared -o $@ $(filter %.cpp,$^) $$(pkg-config --cflags --libs OpenImageIO OpenColorIO) $(LDFLAGS)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -shared -o $@ $< $$(pkg-config --cflags --libs $(LIBRARY)) $(LDFLAGS)
 
 $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(TESTLIB) $(BUILD)/libssdo.a
 	@mkdir -p $(@D)
@@ -147,11 +149,11 @@ format: ; clang-format -i $$(git ls-files 'src/*.[ch]' 'src/*.cpp' 'tests/*.[ch]
 install: all
 	install -d $(DESTDIR)$(BINDIR) $(DESTDIR)$(LIBDIR) $(DESTDIR)$(MANDIR)
 	install -m 755 $(BIN) $(DESTDIR)$(BINDIR)/ssdo-filter
-	install -m 644 $(PLUGIN) $(DESTDIR)$(LIBDIR)/ssdo-images.so
+	install -m 644 $(PLUGIN) $(DESTDIR)$(LIBDIR)
 	install -m 644 man/ssdo-filter.1 $(DESTDIR)$(MANDIR)/ssdo-filter.1
 
 uninstall:
-	rm -f $(DESTDIR)$(BINDIR)/ssdo-filter $(DESTDIR)$(LIBDIR)/ssdo-images.so $(DESTDIR)$(MANDIR)/ssdo-filter.1
+	rm -f $(DESTDIR)$(BINDIR)/ssdo-filter $(DESTDIR)$(LIBDIR)/ssdo-images.so $(DESTDIR)$(LIBDIR)/ssdo-colour.so $(DESTDIR)$(MANDIR)/ssdo-filter.1
 	-rmdir $(DESTDIR)$(LIBDIR)
 
 clean: ; rm -rf $(BUILD) demo

@@ -40,6 +40,7 @@ typedef struct options {
     int env_up;        // 0 by renderer, 'y', 'z'
     double env_rotate; // degrees
     double env_scale;
+    const char *env_colorspace, *ocio;
     const char *env_frame; // world, camera
     double env_lod;        // < 0 auto
     compose_mode mode;

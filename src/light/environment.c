@@ -8,6 +8,7 @@
 #include "light/latlong.h"
 #include "light/mips.h"
 #include "light/sh.h"
+#include "plugin/colour.h"
 
 static const float greatest = 1e30f;
 
@@ -103,7 +104,9 @@ bool environment_load(const env_options *options, environment *out, log_t *log, 
     int width, height;
     float *rgb = NULL;
     if (!latlong_read(options->path, options->threads, &width, &height, &rgb, log, e)) return false;
-    bool ok = environment_prepare(rgb, width, height, options, out, log, e);
+    bool ok = !options->colorspace ||
+              colour_to_scene_linear(options->ocio, options->colorspace, rgb, (size_t)width * (size_t)height, e);
+    ok = ok && environment_prepare(rgb, width, height, options, out, log, e);
     free(rgb);
     return ok;
 }

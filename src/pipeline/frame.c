@@ -110,7 +110,9 @@ static bool prepare_light(job *j, const frame_result *r, error *e)
                       .up_z = env_up_z(j, r),
                       .rotate_degrees = j->o->env_rotate,
                       .scale = j->o->env_scale,
-                      .threads = j->threads};
+                      .threads = j->threads,
+                      .colorspace = j->o->env_colorspace,
+                      .ocio = j->o->ocio};
     if (!environment_load(&eo, &j->env, j->log, e)) return false;
     j->env_loaded = true;
     if (!j->o->env) log_warn(j->log, "white", "no --env: radiance is that of a white environment of radiance 1");

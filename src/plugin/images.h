@@ -1,7 +1,6 @@
 // The OpenImageIO module: `extern "C"`, opened with dlopen on demand, because linking it costs every run 290 ms.
 //
-// It is looked for beside the executable, in ../lib/ssdo-filter beside the executable's folder, then in the installed folder
-// (SSDO_LIBDIR at build time); the environment variable SSDO_PLUGIN_DIR comes first. No C++ exception crosses the border.
+// Where it is looked for: plugin/module.h.
 #ifndef SSDO_PLUGIN_IMAGES_H
 #define SSDO_PLUGIN_IMAGES_H
 

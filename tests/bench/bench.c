@@ -105,20 +105,24 @@ static bool tells_both(const bench_row *row)
     return scalar || bench_layers(row) == 1u << LAYER_OCCLUSION;
 }
 
-// The first round also measures the errors. The long rows are timed only there.
+// The first round also measures the errors. The long rows, and what costs a march of its own for light, are timed only there.
 static bool do_row(rig *r, const bench_scene *s, const bench_row *row, bench_cell *cell, int round, const char *cache, error *e)
 {
+    const unsigned occlusion = 1u << LAYER_OCCLUSION;
     if (round == 0) {
         if (!bench_measure(r, s, row, cache, cell, e)) return false;
-        if (row->kind == ROW_METHOD) cell->rounds = 1;
-        return row->kind != ROW_METHOD || s->generated || tells_both(row) ||
-               run_once(r, s, row, 1 << LAYER_OCCLUSION, &cell->direct[0], NULL, e);
+        if (row->kind != ROW_METHOD) return true;
+        cell->rounds = cell->all_rounds = 1;
+        return s->generated || tells_both(row) || run_once(r, s, row, occlusion, &cell->direct[0], NULL, e);
     }
     if (row->kind != ROW_METHOD || row->samples > BENCH_LONG) return true;
     int i = cell->rounds++;
     cell->round[i] = round;
-    return run_once(r, s, row, bench_layers(row), &cell->direct[i], &cell->all[i], e) &&
-           (tells_both(row) || run_once(r, s, row, 1 << LAYER_OCCLUSION, &cell->direct[i], NULL, e));
+    if (tells_both(row) || row->standard) {
+        cell->all_rounds++;
+        if (!run_once(r, s, row, bench_layers(row), &cell->direct[i], &cell->all[i], e)) return false;
+    }
+    return tells_both(row) || run_once(r, s, row, occlusion, &cell->direct[i], NULL, e);
 }
 
 static void measure_yardstick(const yardstick *y, bench_time *sum)

@@ -75,7 +75,7 @@ typedef struct bench_cell { // a row on a scene
     score occlusion, radiance, indirect;
     bool has_occlusion, has_radiance, has_indirect, has_a;
     double a_rmse, a_bias;
-    int rounds, round[BENCH_ROUNDS];                    // in which it was timed
+    int rounds, all_rounds, round[BENCH_ROUNDS];        // in which it was timed
     bench_time direct[BENCH_ROUNDS], all[BENCH_ROUNDS]; // occlusion alone; every layer the method makes (0: not timed)
 } bench_cell;
 

@@ -27,11 +27,11 @@ bench_time bench_cell_time(const bench_results *r, int row, int which, bool all)
 {
     const bench_cell *c = &r->cells[row * r->scene_count + which];
     const bench_time *t = all ? c->all : c->direct;
-    if (all && !c->has_radiance) return (bench_time){NAN, NAN};
     double cpu[BENCH_ROUNDS], wall[BENCH_ROUNDS];
-    for (int i = 0; i < c->rounds; i++) cpu[i] = t[i].cpu, wall[i] = t[i].wall;
-    if (c->rounds == 0 || which >= r->timed_count) return (bench_time){NAN, NAN};
-    return (bench_time){bench_median(cpu, c->rounds), bench_median(wall, c->rounds)};
+    int n = all ? c->all_rounds : c->rounds;
+    for (int i = 0; i < n; i++) cpu[i] = t[i].cpu, wall[i] = t[i].wall;
+    if (n == 0 || which >= r->timed_count || (all && !c->has_radiance)) return (bench_time){NAN, NAN};
+    return (bench_time){bench_median(cpu, n), bench_median(wall, n)};
 }
 
 double bench_cell_yards(const bench_results *r, int row, int which, bool all)
@@ -39,9 +39,9 @@ double bench_cell_yards(const bench_results *r, int row, int which, bool all)
     const bench_cell *c = &r->cells[row * r->scene_count + which];
     const bench_time *t = all ? c->all : c->direct;
     double ratio[BENCH_ROUNDS];
-    if (all && !c->has_radiance) return NAN;
-    for (int i = 0; i < c->rounds; i++) ratio[i] = t[i].cpu / r->yard[which][c->round[i]].cpu;
-    return c->rounds && which < r->timed_count ? bench_median(ratio, c->rounds) : NAN;
+    int n = all ? c->all_rounds : c->rounds;
+    for (int i = 0; i < n && which < r->timed_count; i++) ratio[i] = t[i].cpu / r->yard[which][c->round[i]].cpu;
+    return n == 0 || which >= r->timed_count || (all && !c->has_radiance) ? NAN : bench_median(ratio, n);
 }
 
 static double square(double x) { return x * x; }

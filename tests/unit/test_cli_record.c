@@ -58,7 +58,7 @@ static const char *const everything =
     "--angle-bias 12.5 --sh-sigma 0.25 --from-sh --blur none --scale 1.7 "
     "--contrast 0.3333333333333333 --bounce ssdo --bounce-strength 1e-300 --vpl-count 99 --env sky.exr --env-up y --env-rotate "
     "-12.5 "
-    "--env-scale 3 "
+    "--env-scale 3 --env-colorspace sRGB --ocio config.ocio "
     "--env-frame camera --env-lod 2.5 --mode visibility --amount 0 --multiply all --depthmask-strength 2 --position 'View "
     "Layer.Position' --normal 'it'\\''s N' "
     "--depth Z "

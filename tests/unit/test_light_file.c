@@ -1,4 +1,5 @@
 // Reading environment maps from files.
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,6 +7,7 @@
 
 #include "base/half.h"
 #include "exr/write.h"
+#include "plugin/colour.h"
 #include "test_light.h"
 
 static const char *temporary(void)
@@ -209,6 +211,38 @@ static void what_is_no_map_is_refused(void **state)
     unlink(temporary());
 }
 
+// A map in another colour space is converted by OpenColorIO; here the space's curve is a square.
+static void another_colour_space_is_converted(void **state)
+{
+    (void)state;
+    setenv("SSDO_PLUGIN_DIR", "build", 0);
+    static const char config[] = "ocio_profile_version: 1\n"
+                                 "roles:\n"
+                                 "  default: lin\n"
+                                 "  scene_linear: lin\n"
+                                 "colorspaces:\n"
+                                 "  - !<ColorSpace>\n"
+                                 "    name: lin\n"
+                                 "  - !<ColorSpace>\n"
+                                 "    name: squared\n"
+                                 "    to_reference: !<ExponentTransform> {value: [2, 2, 2, 1]}\n";
+    char path[80];
+    snprintf(path, sizeof path, "/tmp/ssdo-test-light-%ld.ocio", (long)getpid());
+    FILE *to = fopen(path, "w");
+    assert_non_null(to);
+    fputs(config, to);
+    fclose(to);
+    error e = {0};
+    float rgb[6] = {0.5f, 0.25f, 1.0f, 0.1f, 0.0f, 2.0f};
+    if (!colour_to_scene_linear(path, "squared", rgb, 2, &e)) fail_msg("%s", e.message);
+    static const double expected[6] = {0.25, 0.0625, 1.0, 0.01, 0.0, 4.0};
+    for (int i = 0; i < 6; i++) assert_true(fabs((double)rgb[i] - expected[i]) < 1e-3 * (1.0 + expected[i]));
+    assert_false(colour_to_scene_linear(path, "cubed", rgb, 2, &e));
+    assert_int_equal(e.code, ERR_INPUT);
+    assert_non_null(strstr(e.message, "squared")); // the spaces there are
+    remove(path);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -218,6 +252,7 @@ int main(void)
         cmocka_unit_test(an_odd_shape_is_warned_about),
         cmocka_unit_test(other_formats_go_through_the_module),
         cmocka_unit_test(what_is_no_map_is_refused),
+        cmocka_unit_test(another_colour_space_is_converted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,22 @@
+#include "plugin/colour.h"
+
+#include <stdlib.h>
+
+#include "plugin/colour_abi.h"
+#include "plugin/module.h"
+
+static const module colour = {"ssdo-colour.so", "OpenColorIO"};
+
+bool colour_to_scene_linear(const char *config, const char *from, float *rgb, size_t n, error *e)
+{
+    char message[MODULE_MESSAGE] = "";
+    const char *path = config ? config : getenv("OCIO");
+    if (!path || !*path)
+        return err_set(e, ERR_USAGE, NULL, NULL,
+                       "colour space '%s' needs an OpenColorIO config; name one with --ocio or in $OCIO", from);
+    colour_to_linear_fn convert =
+        (colour_to_linear_fn)module_function(&colour, "ssdo_colour_to_linear", "converting colours", ERR_INPUT, path, e);
+    if (!convert) return false;
+    if (convert(path, from, rgb, n, message, sizeof message)) return true;
+    return err_set(e, ERR_INPUT, path, NULL, "%s", message);
+}

@@ -1,0 +1,45 @@
+// The C++ side of plugin/colour.h: nothing may be thrown across the border.
+#include <cstdio>
+#include <string>
+
+#include <OpenColorIO/OpenColorIO.h>
+
+#include "plugin/colour_abi.h"
+
+namespace OCIO = OCIO_NAMESPACE;
+
+namespace
+{
+std::string known_spaces(const OCIO::ConstConfigRcPtr &config)
+{
+    std::string list;
+    for (int i = 0; i < config->getNumColorSpaces() && list.size() < 200; i++)
+        list += std::string(i ? ", " : "") + config->getColorSpaceNameByIndex(i);
+    return list;
+}
+} // namespace
+
+extern "C" __attribute__((visibility("default"))) int ssdo_colour_to_linear(const char *path, const char *from, float *rgb,
+                                                                            size_t n, char *message, size_t size)
+{
+    try {
+        OCIO::ConstConfigRcPtr config = OCIO::Config::CreateFromFile(path);
+        if (!config->getColorSpace(from)) {
+            std::snprintf(message, size, "has no colour space '%s'; it has %s", from, known_spaces(config).c_str());
+            return 0;
+        }
+        OCIO::ConstCPUProcessorRcPtr cpu = config->getProcessor(from, OCIO::ROLE_SCENE_LINEAR)->getDefaultCPUProcessor();
+        // In rows, because an image's width is a long but its strides are counted in bytes.
+        const size_t row = 1 << 20;
+        for (size_t at = 0; at < n; at += row) {
+            OCIO::PackedImageDesc image(rgb + 3 * at, static_cast<long>(n - at < row ? n - at : row), 1, 3);
+            cpu->apply(image);
+        }
+        return 1;
+    } catch (const std::exception &e) {
+        std::snprintf(message, size, "cannot be used as an OpenColorIO config: %s", e.what());
+    } catch (...) {
+        std::snprintf(message, size, "cannot be used as an OpenColorIO config");
+    }
+    return 0;
+}
