@@ -119,6 +119,7 @@ bool filter_frame(job *j, frame_result *r, error *e)
     r->timing_count = c.timing_count;
     memcpy(r->uploads, c.uploads, sizeof r->uploads);
     r->upload_count = c.upload_count;
+    r->planes = c.planes;
     r->tile_size = c.tiles.size, r->tiles = c.tiles.columns * c.tiles.rows, r->tiles_occupied = c.tiles.occupied_count;
     pass_end(&c);
     return ok;

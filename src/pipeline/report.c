@@ -145,6 +145,23 @@ static double off_frame_share(const frame_result *r)
     return all > 0.0 ? outside / all : 0.0;
 }
 
+static json_object *planes_of(const frame_result *r)
+{
+    json_object *list = json_object_new_array();
+    for (int i = 0; i < r->planes.count; i++) {
+        const plane *p = &r->planes.planes[i];
+        json_object *o = json_object_new_object(), *normal = json_object_new_array();
+        json_object_array_add(normal, json_object_new_double(p->normal.x));
+        json_object_array_add(normal, json_object_new_double(p->normal.y));
+        json_object_array_add(normal, json_object_new_double(p->normal.z));
+        put(o, "normal", normal);
+        put_number(o, "offset", p->offset);
+        put_number(o, "share", p->share);
+        json_object_array_add(list, o);
+    }
+    return list;
+}
+
 static json_object *report_of(const job *j, const frame_result *r, const char *output)
 {
     json_object *o = json_object_new_object(), *evidence = json_object_new_array(), *layers = json_object_new_array(),
@@ -169,6 +186,7 @@ static json_object *report_of(const job *j, const frame_result *r, const char *o
     for (int l = 0; l < LAYER_COUNT; l++)
         if (r->layers[l]) json_object_array_add(layers, json_object_new_string(layer_table[l].name));
     put(o, "layers", layers);
+    put(o, "planes", planes_of(r)); // camera space: normal . x = offset; share of the surfaces
     put(o, "passes", passes_of(r));
     put(o, "times", times_of(r));
     put(o, "tiles", tiles_of(r));

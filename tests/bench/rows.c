@@ -129,7 +129,7 @@ bool bench_fit_alchemy(rig *r, const bench_scene *scenes, int count, double *sca
     bool ok = method_find("alchemy") != NULL;
     for (int i = 0; ok && i < count; i++) ok = collect(r, &scenes[i], &l[i], e);
     for (int a = 2; ok && a <= 30; a++)
-        for (int c = 2; c <= 12; c++) {
+        for (int c = 2; c <= 32; c++) {
             double sum = 0.0;
             for (int i = 0; i < count; i++) sum += error_of(&l[i], 0.1 * a, 0.25 * c);
             if (sum < best) best = sum, *scale = 0.1 * a, *contrast = 0.25 * c;
