@@ -9,20 +9,13 @@
 
 #include <cmocka.h>
 
+#include "must.h"
 #include "reference.h"
 #include "rig.h"
 #include "scene_picture.h"
 #include "truth.h"
 
 enum { PIXELS = 300, WIDTH = 320, HEIGHT = 220 };
-
-static void must(bool ok, const error *e)
-{
-    char text[1024];
-    if (ok) return;
-    err_format(e, text, sizeof text);
-    fail_msg("%s", text);
-}
 
 typedef struct fixture {
     rig r;

@@ -13,6 +13,7 @@
 
 #include <cmocka.h>
 
+#include "must.h"
 #include "reference.h"
 #include "rig.h"
 #include "scene_picture.h"
@@ -29,14 +30,6 @@ static assumption assumption_of(const method *m)
     if (strcmp(m->name, "gtao") == 0 || strcmp(m->name, "bitmask") == 0) return HORIZON; // tested with endless thickness
     if (strncmp(m->reach, "points", 6) == 0) return POINTS;
     return strncmp(m->reach, "surfaces", 8) == 0 ? VISIBILITY : NONE;
-}
-
-static void must(bool ok, const error *e)
-{
-    char text[1024];
-    if (ok) return;
-    err_format(e, text, sizeof text);
-    fail_msg("%s", text);
 }
 
 typedef struct fixture {

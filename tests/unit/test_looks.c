@@ -12,18 +12,11 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "must.h"
 #include "rig.h"
 #include "scene_picture.h"
 
 enum { WIDTH = 120, HEIGHT = 80, PIXELS = WIDTH * HEIGHT };
-
-static void must(bool ok, const error *e)
-{
-    char text[1024];
-    if (ok) return;
-    err_format(e, text, sizeof text);
-    fail_msg("%s", text);
-}
 
 static int open_rig(void **state)
 {

@@ -8,19 +8,12 @@
 
 #include <cmocka.h>
 
+#include "must.h"
 #include "rig.h"
 #include "scene_picture.h"
 #include "truth.h"
 
 enum { ALL_LIGHT = 1 << LAYER_OCCLUSION | 1 << LAYER_RADIANCE };
-
-static void must(bool ok, const error *e)
-{
-    char text[1024];
-    if (ok) return;
-    err_format(e, text, sizeof text);
-    fail_msg("%s", text);
-}
 
 static int open_white(void **state)
 {

@@ -15,16 +15,9 @@
 #include <cmocka.h>
 
 #include "exr/write.h"
+#include "must.h"
 #include "pipeline/frame.h"
 #include "scene_picture.h"
-
-static void must(bool ok, const error *e)
-{
-    char text[1024];
-    if (ok) return;
-    err_format(e, text, sizeof text);
-    fail_msg("%s", text);
-}
 
 static char folder[] = "/tmp/ssdo-output-XXXXXX";
 

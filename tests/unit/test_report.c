@@ -13,20 +13,13 @@
 #include <cmocka.h>
 
 #include "exr/write.h"
+#include "must.h"
 #include "pipeline/report.h"
 #include "scene_picture.h"
 
 enum { WIDTH = 150, HEIGHT = 70 }; // 3 x 2 tiles
 
 static const char *SKY = "samples/sky_soft.exr";
-
-static void must(bool ok, const error *e)
-{
-    char text[1024];
-    if (ok) return;
-    err_format(e, text, sizeof text);
-    fail_msg("%s", text);
-}
 
 static void path_of(const char *name, char path[96]) { snprintf(path, 96, "/tmp/ssdo_report_%d_%s", (int)getpid(), name); }
 

@@ -12,20 +12,13 @@
 #include <cmocka.h>
 
 #include "light/sh.h"
+#include "must.h"
 #include "near.h"
 #include "reference.h"
 #include "rig.h"
 #include "scene_picture.h"
 
 enum { PIXELS = 200, WIDTH = 160, HEIGHT = 110, SH_LAYERS = 1 << LAYER_SH_0 | 1 << LAYER_SH_1 | 1 << LAYER_SH_2 };
-
-static void must(bool ok, const error *e)
-{
-    char text[1024];
-    if (ok) return;
-    err_format(e, text, sizeof text);
-    fail_msg("%s", text);
-}
 
 static vec3 direction(int i)
 {

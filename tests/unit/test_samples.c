@@ -11,16 +11,9 @@
 
 #include <cmocka.h>
 
+#include "must.h"
 #include "pipeline/frame.h"
 #include "sample.h"
-
-static void must(bool ok, const error *e)
-{
-    char text[1024];
-    if (ok) return;
-    err_format(e, text, sizeof text);
-    fail_msg("%s", text);
-}
 
 typedef struct run {
     sample s;

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "must.h"
 #include "near.h"
 #include "passes/vpl.h"
 #include "reference.h"
@@ -17,14 +18,6 @@
 #include "scene_picture.h"
 
 enum { PIXELS = 250, WIDTH = 128, HEIGHT = 96, ALL = WIDTH * HEIGHT, NEEDED = 1 << LAYER_RADIANCE | 1 << LAYER_INDIRECT };
-
-static void must(bool ok, const error *e)
-{
-    char text[1024];
-    if (ok) return;
-    err_format(e, text, sizeof text);
-    fail_msg("%s", text);
-}
 
 static gbuffer shoot(void (*build)(scene *), double fov)
 {
