@@ -90,18 +90,86 @@ static void plot_panel(FILE *f, const bench_results *r, const bench_summary *s, 
     static const char *titles[] = {"occlusion", "radiance (relative)", "indirect (relative)"};
     double left = 0.05 + 0.325 * p;
     fprintf(f, "set lmargin at screen %g\nset rmargin at screen %g\nset title '%s'\n", left, left + 0.285, titles[p]);
-    fprintf(f, "set xlabel '%s'\n", p == PANEL_OCCLUSION ? "GL time of occlusion, yardsticks" : "GL time of all layers, yardsticks");
+    fprintf(f, "set xlabel '%s'\n",
+            p == PANEL_OCCLUSION ? "GL time of occlusion, yardsticks" : "GL time of all layers, yardsticks");
     fprintf(f, "set ylabel '%s' offset 1\n", p == PANEL_OCCLUSION ? "rmse against path-traced truth" : "");
     set_range(f, r, s, p);
+    fprintf(f, "unset label\n");
+    for (int i = 0; i < r->row_count; i++)
+        if (r->rows[i].kind != ROW_METHOD && isfinite(error_of(&s[i], p)))
+            fprintf(f, "set label '%s' at graph %s, first %.6f %s offset 0,0.5 tc rgb '#666666' font ',10'\n", r->rows[i].name,
+                    p == PANEL_OCCLUSION ? "0.99" : "0.01", error_of(&s[i], p), p == PANEL_OCCLUSION ? "right" : "left");
     fprintf(f, "plot $front%d using 1:2 with steps lw 7 lc rgb '#e4e4e4' notitle", (int)p);
     for (int i = 0; i < r->row_count; i++)
         if (starts_curve(r, s, i, p))
-            fprintf(f, ", $c%d_%d using 1:2 smooth unique with linespoints lw %g pt %d ps 0.7 lc rgb '%s' dt %d notitle", (int)p, i,
-                    is_variant(&r->rows[i]) ? 0.8 : 1.8, r->rows[i].blur ? 4 : 7, colour_of(&r->rows[i]),
-                    r->rows[i].blur ? 2 : is_variant(&r->rows[i]) ? 3 : 1);
-    for (int i = 0, grey = 0; i < r->row_count; i++)
+            fprintf(f, ", $c%d_%d using 1:2 smooth unique with linespoints lw %g pt %d ps 0.7 lc rgb '%s' dt %d notitle", (int)p,
+                    i, is_variant(&r->rows[i]) ? 0.8 : 1.8, r->rows[i].blur ? 4 : 7, colour_of(&r->rows[i]),
+                    r->rows[i].blur           ? 2
+                    : is_variant(&r->rows[i]) ? 3
+                                              : 1);
+    for (int i = 0; i < r->row_count; i++)
         if (r->rows[i].kind != ROW_METHOD && isfinite(error_of(&s[i], p)))
-            fprintf(f, ", %.6f with lines lw 1 dt 4 lc rgb '#%06x' notitle", error_of(&s[i], p), 0x505050 + 0x202020 * (grey++ % 4)),
-                fprintf(f, ", '+' using (%g):(%.6f):('%s') every ::0::0 with labels left offset 0,0.4 font ',9' notitle", 0.0, 0.0, "");
+            fprintf(f, ", %.6f with lines lw 1 dt 4 lc rgb '#666666' notitle", error_of(&s[i], p));
     fprintf(f, ", $front%d using 1:2 with points pt 6 ps 1.5 lw 1.2 lc rgb '#000000' notitle\n", (int)p);
+}
+
+// A legend for all panels: an empty plot whose key lies along the bottom.
+static void legend(FILE *f, const bench_results *r)
+{
+    fprintf(f,
+            "unset label\nset lmargin at screen 0.05\nset rmargin at screen 0.985\nset title ''\nset xlabel ''\nset ylabel ''\n"
+            "unset tics\nunset border\nset key at screen 0.5, 0.10 center center horizontal maxrows 2 samplen 2 width 2\n"
+            "set xrange [1:2]\nset yrange [1:2]\nplot ");
+    for (const method *m = methods; m->name; m++) {
+        bool used = false;
+        for (int i = 0; i < r->row_count; i++) used |= r->rows[i].m == m;
+        if (used)
+            fprintf(f, "NaN with linespoints lw 1.8 pt 7 ps 0.7 lc rgb '%s' title '%s', ", colours[(m - methods) % COLOURS],
+                    m->name);
+    }
+    fprintf(f, "NaN with linespoints lw 1.8 pt 4 ps 0.7 dt 2 lc rgb '#000000' title 'with its blur', "
+               "NaN with linespoints lw 0.8 pt 7 ps 0.7 dt 3 lc rgb '#000000' title 'variant of a method', "
+               "NaN with points pt 6 ps 1.5 lc rgb '#000000' title 'Pareto front'\n");
+}
+
+static void script(FILE *f, const bench_results *r, const bench_summary *s)
+{
+    for (int p = 0; p < PANELS; p++) {
+        front_data(f, r, s, (panel)p);
+        for (int i = 0; i < r->row_count; i++)
+            if (starts_curve(r, s, i, (panel)p)) curve_data(f, r, s, i, (panel)p);
+    }
+    fprintf(
+        f, "set encoding utf8\nset grid lc rgb '#eeeeee'\nset border 3 lc rgb '#444444'\nset logscale xy\nset xtics nomirror\n"
+           "set ytics nomirror (0.02, 0.03, 0.04, 0.05, 0.06, 0.08, 0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.2, "
+           "1.5, 2)\nset key off\nset tmargin at screen 0.88\nset bmargin at screen 0.24\n");
+    fprintf(f, "set multiplot title '%s: error against time, root mean square over the scenes'\n", r->title);
+    for (int p = 0; p < PANELS; p++) plot_panel(f, r, s, (panel)p);
+    legend(f, r);
+    fprintf(f, "unset multiplot\n");
+}
+
+static bool draw(const bench_results *r, const bench_summary *s, const char *terminal, const char *dir, const char *name,
+                 error *e)
+{
+    char path[512], command[560];
+    snprintf(path, sizeof path, "%s/bench.gp", dir);
+    FILE *f = fopen(path, "w");
+    if (!f) return err_set(e, ERR_OUTPUT, path, NULL, "cannot be written: %s", strerror(errno));
+    fprintf(f, "set terminal %s size 1500,640 background '#ffffff' noenhanced\nset output '%s/%s'\n", terminal, dir, name);
+    script(f, r, s);
+    bool written = fclose(f) == 0;
+    snprintf(command, sizeof command, "gnuplot '%s'", path);
+    if (written && system(command) == 0) return true;
+    return err_set(e, ERR_OUTPUT, path, NULL, "gnuplot cannot draw this; `make deps-bench` installs it");
+}
+
+// The rendered scenes; without any, nothing was timed but the generated ones.
+bool bench_write_plot(const bench_results *r, const char *dir, error *e)
+{
+    static bench_summary s[BENCH_ROWS];
+    bench_summarise(r, SET_SAMPLES, s);
+    if (s[0].scenes == 0) bench_summarise(r, SET_GENERATED, s);
+    return draw(r, s, "svg font 'sans-serif,13'", dir, "bench.svg", e) &&
+           draw(r, s, "pngcairo font 'sans-serif,11'", dir, "bench.png", e);
 }
