@@ -24,8 +24,8 @@ slices: cosine, sin^2 term times 1.05|include/arc_slice.glsl|s/0\.5 \* (s\.cos_n
 slices: measure, second term times 1.05|include/arc_slice.glsl|s/s\.sin_n \* (t - st/1.05 * s.sin_n * (t - st/|arc closed_forms
 slices: measure of the far half times 1.05|include/arc_slice.glsl|s/s\.below = 0\.5/s.below = 0.525/|arc closed_forms
 slices: scale of the measure times 1.05|include/arc_slice.glsl|s#s\.scale = 1\.0 /#s.scale = 1.05 /#|arc closed_forms
-slices: angle of the normal times 1.05|arc.comp|s/n = atan(sideways, up)/n = 1.05 * atan(sideways, up)/|arc closed_forms
-slices: weight, length of the projected normal left out (5 % of it are divided away)|arc.comp|s/weight = sqrt(squared) \*/weight =/|arc closed_forms
+slices: angle of the normal times 1.05|include/arc_slice.glsl|s/n = atan(sideways, up)/n = 1.05 * atan(sideways, up)/|arc closed_forms
+slices: weight, length of the projected normal left out (5 % of it divide away)|include/arc_slice.glsl|s/weight = squared \* inverse_length \*/weight =/|arc closed_forms
 bitmask: thickness times 1.05|include/arc_taps.glsl|s/w + params\.thickness/w + 1.05 * params.thickness/|arc
 gtao, bitmask: radius squared times 1.05|include/arc_taps.glsl|s/< params\.radius \* params\.radius/< 1.05 * params.radius * params.radius/|arc closed_forms
 LIST
