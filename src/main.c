@@ -5,26 +5,40 @@
 #include <stdio.h>
 #include <unistd.h>
 
+#include "base/outfile.h"
 #include "cli/options.h"
 #include "pipeline/batch.h"
 #include "pipeline/frame.h"
 #include "pipeline/preview.h"
 #include "pipeline/report.h"
 
-// The signal that asked us to stop. The first lets a frame that is being written finish; the second ends the process at once.
+// The signal that asked us to stop: frames are dropped, but for one that is being written. SIGINT after that ends the process at
+// once; a farm repeats SIGTERM and means the same.
 static volatile int stop_signal;
 
 static void on_signal(int number)
 {
-    if (stop_signal) _exit(128 + number);
+    if (stop_signal && number == SIGINT) {
+        outfile_remove_all();
+        _exit(128 + number);
+    }
     stop_signal = number;
 }
 
-static int fail(const error *e)
+static void catch_signals(void)
+{
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGINT, on_signal);
+    signal(SIGTERM, on_signal);
+    if (signal(SIGHUP, on_signal) == SIG_IGN) signal(SIGHUP, SIG_IGN); // nohup
+}
+
+static int fail(const options *o, const error *e)
 {
     char text[1600];
     err_format(e, text, sizeof text);
     fprintf(stderr, "ssdo-filter: %s\n", text);
+    progress_fail(o->progress, text);
     return (int)e->code;
 }
 
@@ -37,18 +51,27 @@ static int list_devices(void)
     return 0;
 }
 
+static bool run_frame(job *j, error *e)
+{
+    const options *o = j->o;
+    frame_result r = {0};
+    progress p;
+    progress_begin(&p, o->progress, 1, j->log);
+    j->progress = &p;
+    bool ok = frame_run(j, o->inputs[0], o->output, &r, e) && (!o->preview || preview_write(&r, o->preview, e)) &&
+              (!o->report || report_write(j, &r, o->output, o->report, e));
+    frame_free(&r);
+    progress_end(&p);
+    j->progress = NULL;
+    return ok;
+}
+
 static bool run(const options *o, log_t *log, error *e)
 {
     job j;
-    frame_result r = {0};
     bool ok = job_open(&j, o, log, e);
-    if (ok && batch_is(o)) {
-        ok = batch_run(&j, &stop_signal, e);
-    } else if (ok) {
-        ok = frame_run(&j, o->inputs[0], o->output, &r, e) && (!o->preview || preview_write(&r, o->preview, e)) &&
-             (!o->report || report_write(&j, &r, o->output, o->report, e));
-        frame_free(&r);
-    }
+    j.stop = &stop_signal;
+    if (ok) ok = batch_is(o) ? batch_run(&j, e) : run_frame(&j, e);
     job_close(&j);
     return ok;
 }
@@ -58,11 +81,9 @@ int main(int argc, char **argv)
     error e = {0};
     options o;
     setlocale(LC_NUMERIC, "C"); // whatever LC_ALL says
-    signal(SIGPIPE, SIG_IGN);
-    signal(SIGINT, on_signal);
-    signal(SIGTERM, on_signal);
+    catch_signals();
     options_defaults(&o);
-    if (!options_parse(argc, argv, &o, &e)) return fail(&e);
+    if (!options_parse(argc, argv, &o, &e)) return fail(&o, &e);
     if (o.help) {
         options_print_help(stdout);
         return 0;
@@ -77,5 +98,5 @@ int main(int argc, char **argv)
     bool ok = run(&o, &log, &e);
     log_free(&log);
     if (stop_signal) return 128 + stop_signal;
-    return ok ? 0 : fail(&e);
+    return ok ? 0 : fail(&o, &e);
 }

@@ -43,6 +43,18 @@ static bool remember(log_t *log, const char *key, const char *text)
     return true;
 }
 
+void log_wipe(log_t *log)
+{
+    if (log->bar) fputs(LOG_WIPE, stderr);
+    log->bar = false;
+}
+
+static void print_line(log_t *log, const char *kind, const char *text)
+{
+    log_wipe(log);
+    fprintf(stderr, "ssdo-filter: %s%s\n", kind, text);
+}
+
 void log_warn(log_t *log, const char *key, const char *format, ...)
 {
     if (!log) return;
@@ -52,19 +64,32 @@ void log_warn(log_t *log, const char *key, const char *format, ...)
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
     pthread_mutex_lock(&log->lock);
-    if (remember(log, key, text) && log->level >= LOG_WARN) fprintf(stderr, "ssdo-filter: warning: %s\n", text);
+    if (remember(log, key, text) && log->level >= LOG_WARN) print_line(log, "warning: ", text);
     pthread_mutex_unlock(&log->lock);
+}
+
+static void say(log_t *log, const char *format, va_list args)
+{
+    char text[2048];
+    vsnprintf(text, sizeof text, format, args);
+    pthread_mutex_lock(&log->lock);
+    print_line(log, "", text);
+    pthread_mutex_unlock(&log->lock);
+}
+
+void log_error(log_t *log, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    say(log, format, args);
+    va_end(args);
 }
 
 void log_info(log_t *log, const char *format, ...)
 {
     if (!log || log->level < LOG_INFO) return;
-    char text[1024];
     va_list args;
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    say(log, format, args);
     va_end(args);
-    pthread_mutex_lock(&log->lock);
-    fprintf(stderr, "ssdo-filter: %s\n", text);
-    pthread_mutex_unlock(&log->lock);
 }

@@ -16,14 +16,23 @@ typedef struct log {
     char **warnings; // texts of the warnings so far, owned
     char **keys;     // their keys, owned
     int warning_count;
+    bool bar; // a progress bar stands on standard error's current line; whoever prints takes it away first
 } log_t;
+
+// Takes the current line of a terminal away.
+#define LOG_WIPE "\r\033[K"
 
 void log_init(log_t *log, log_level level);
 void log_free(log_t *log);
 
 // "ssdo-filter: warning: ..." on stderr unless quiet; once per key.
 void log_warn(log_t *log, const char *key, const char *format, ...) __attribute__((format(printf, 3, 4)));
+// "ssdo-filter: ..." on stderr, quiet or not: a frame of many that failed.
+void log_error(log_t *log, const char *format, ...) __attribute__((format(printf, 2, 3)));
 // "ssdo-filter: ..." on stderr with -v only.
 void log_info(log_t *log, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+// Takes a progress bar away, if there is one. The caller holds the lock.
+void log_wipe(log_t *log);
 
 #endif

@@ -2,6 +2,8 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
+#include <stdatomic.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +16,37 @@
 #include "base/mem.h"
 
 enum { ATTEMPTS = 16 };
+
+// The temporary files there are. A signal handler is handed nothing, so this is the one thing of the program that is global.
+enum { FREE, CHANGING, LIVE };
+static struct tracked {
+    atomic_int state;
+    char path[PATH_MAX];
+} tracked[OUTFILE_TRACKED];
+
+static void track(const char *path)
+{
+    size_t n = strlen(path);
+    for (int i = 0; i < OUTFILE_TRACKED && n < PATH_MAX; i++) {
+        int expected = FREE;
+        if (!atomic_compare_exchange_strong(&tracked[i].state, &expected, CHANGING)) continue;
+        memcpy(tracked[i].path, path, n + 1);
+        atomic_store(&tracked[i].state, LIVE);
+        return;
+    }
+}
+
+static void untrack(const char *path)
+{
+    for (int i = 0; i < OUTFILE_TRACKED; i++)
+        if (atomic_load(&tracked[i].state) == LIVE && strcmp(tracked[i].path, path) == 0) atomic_store(&tracked[i].state, FREE);
+}
+
+void outfile_remove_all(void)
+{
+    for (int i = 0; i < OUTFILE_TRACKED; i++)
+        if (atomic_load(&tracked[i].state) == LIVE) unlink(tracked[i].path);
+}
 
 // The path the file will really have: a symbolic link is followed, so that it is not replaced by a plain file.
 static char *resolve_target(const char *path, error *e)
@@ -94,6 +127,7 @@ bool outfile_begin(const char *path, outfile *out, error *e)
         goto fail;
     }
     if (mode) (void)!fchmod(out->fd, mode);
+    track(out->temp);
     return true;
 
 fail:
@@ -128,6 +162,7 @@ bool outfile_commit(outfile *out, error *e)
                 strerror(code));
     else {
         sync_folder(out->target);
+        untrack(out->temp);
         free(out->temp);
         out->temp = NULL; // nothing to remove
     }
@@ -138,7 +173,10 @@ bool outfile_commit(outfile *out, error *e)
 void outfile_abort(outfile *out)
 {
     if (out->fd >= 0) close(out->fd);
-    if (out->temp) unlink(out->temp);
+    if (out->temp) {
+        unlink(out->temp);
+        untrack(out->temp);
+    }
     free(out->temp);
     free(out->target);
     *out = OUTFILE_NONE;

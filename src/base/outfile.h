@@ -10,6 +10,8 @@
 
 #include "base/error.h"
 
+enum { OUTFILE_TRACKED = 16 };
+
 typedef struct outfile {
     int fd;       // open for reading and writing while the file is being made, otherwise -1
     char *temp;   // path of the temporary file, owned
@@ -27,5 +29,9 @@ bool outfile_commit(outfile *out, error *e);
 
 // Closes and removes the temporary file. Harmless on OUTFILE_NONE and on a spent outfile.
 void outfile_abort(outfile *out);
+
+// Removes the temporary files of the whole process that are neither committed nor aborted, up to OUTFILE_TRACKED of them. Safe in
+// a signal handler, and meant for one that ends the process at once: the outfiles are not to be used afterwards.
+void outfile_remove_all(void);
 
 #endif

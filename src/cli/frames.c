@@ -115,6 +115,26 @@ void frames_free(frame_list *l)
     *l = (frame_list){0};
 }
 
+void frames_format(const frame_list *l, char *out, size_t size)
+{
+    static const char more[] = ", ...";
+    size_t used = 0;
+    out[0] = '\0';
+    for (int i = 0, end; i < l->count; i = end) {
+        char item[40];
+        for (end = i + 1; end < l->count && l->frames[end] == l->frames[end - 1] + 1;) end++;
+        if (end - i < 3) end = i + 1;
+        int n = snprintf(item, sizeof item, end - i > 1 ? "%s%d-%d" : "%s%d", i ? ", " : "", l->frames[i], l->frames[end - 1]);
+        bool last = end == l->count;
+        if (used + (size_t)n + (last ? 1 : sizeof more) > size) {
+            snprintf(out + used, size - used, "%s", more);
+            return;
+        }
+        memcpy(out + used, item, (size_t)n + 1);
+        used += (size_t)n;
+    }
+}
+
 // Where the frame number goes: [begin, end) of the path, and its width (0: as many digits as it takes).
 typedef struct place {
     size_t begin, end;

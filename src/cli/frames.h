@@ -22,6 +22,9 @@ enum { FRAMES_MAX = 1000000 };
 // ERR_USAGE names the part of the text that is not a range.
 bool frames_parse(const char *text, frame_list *out, error *e);
 void frames_free(frame_list *l);
+// "1, 5-8, 12": as frames_parse reads it; runs of three and more rising frames are ranges. What does not fit is replaced by
+// "...".
+void frames_format(const frame_list *l, char *out, size_t size);
 
 // True if the path holds a frame place.
 bool pattern_is(const char *path);

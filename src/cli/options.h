@@ -10,6 +10,14 @@
 enum { OPT_MAX_INPUTS = 32 };
 
 typedef enum radius_unit { RADIUS_AUTO, RADIUS_WORLD, RADIUS_PIXELS } radius_unit;
+typedef enum progress_form {
+    PROGRESS_AUTO,
+    PROGRESS_PLAIN,
+    PROGRESS_ALF,
+    PROGRESS_OPENJD,
+    PROGRESS_NONE,
+    PROGRESS_BAR // what auto becomes at a terminal; no word of the option
+} progress_form;
 typedef enum compose_mode { MODE_RADIANCE, MODE_VISIBILITY } compose_mode;
 
 // What the user asked for. Strings point into argv or to constants; NULL means "not given". Defaults: options_defaults().
@@ -65,6 +73,7 @@ typedef struct options {
     int radius_from; // frame that the automatic radius of a sequence is measured on; INT_MIN = the lowest existing
 
     const char *preview, *report;
+    progress_form progress;
     int device; // -1 = first usable
     bool list_devices;
     int threads; // 0 = default

@@ -15,7 +15,8 @@
 enum { POSITION, NORMAL, DEPTH, ALBEDO, BEAUTY, ALPHA, ROUGHNESS, METALLIC, EMISSION };
 
 // OPT_ENUM writes an int.
-_Static_assert(sizeof(compose_mode) == sizeof(int) && sizeof(radius_unit) == sizeof(int), "enums are as wide as int");
+_Static_assert(sizeof(compose_mode) == sizeof(int) && sizeof(radius_unit) == sizeof(int) && sizeof(progress_form) == sizeof(int),
+               "enums are as wide as int");
 
 // clang-format off
 const option_row option_rows[] = {
@@ -169,6 +170,10 @@ const option_row option_rows[] = {
     {.group = GROUP_RUN, .name = "radius-from", .argument = "FRAME", .kind = OPT_INT, .offset = FIELD(radius_from),
      .min = -1e8, .max = 1e8, .pixels = true, .fallback = "the lowest-numbered existing file",
      .help = "Frame of the sequence on which the automatic radius is measured, so that all frames have the same."},
+    {.group = GROUP_RUN, .name = "progress", .argument = "auto|plain|alf|openjd|none", .kind = OPT_ENUM, .offset = FIELD(progress),
+     .words = WORDS({"auto", PROGRESS_AUTO}, {"plain", PROGRESS_PLAIN}, {"alf", PROGRESS_ALF}, {"openjd", PROGRESS_OPENJD}, {"none", PROGRESS_NONE}),
+     .fallback = "auto",
+     .help = "How progress is told: auto is a bar at a terminal and percent lines elsewhere, alf prints ALF_PROGRESS for Tractor, openjd prints openjd_progress, openjd_status and openjd_fail for Open Job Description."},
     {.group = GROUP_RUN, .name = "report", .argument = "FILE.json", .kind = OPT_PATH, .offset = FIELD(report),
      .help = "Also write what was concluded, what ran, why the rest did not, and the times."},
     {.group = GROUP_RUN, .name = "device", .argument = "N", .kind = OPT_INT, .offset = FIELD(device), .min = 0, .max = 255,

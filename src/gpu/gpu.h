@@ -78,6 +78,7 @@ typedef struct gpu_tiles {
     int width, height, size, columns, rows;
     unsigned char *occupied; // columns * rows
     int occupied_count;
+    const volatile int *stop; // borrowed, may be NULL: once it is not zero, no further tile is dispatched
 } gpu_tiles;
 
 enum { GPU_GROUP = 8, GPU_TILE = 64 }; // a work group is GPU_GROUP^2 pixels

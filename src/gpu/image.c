@@ -133,6 +133,7 @@ void gpu_dispatch_tiles(const gpu_tiles *t, bool everywhere)
     for (int row = 0; row < t->rows; row++)
         for (int column = 0; column < t->columns; column++) {
             if (!everywhere && !t->occupied[row * t->columns + column]) continue;
+            if (t->stop && *t->stop) return; // the frame will be dropped
             int x0 = column * t->size, y0 = row * t->size;
             int x1 = x0 + t->size < t->width ? x0 + t->size : t->width, y1 = y0 + t->size < t->height ? y0 + t->size : t->height;
             glUniform4i(0, x0, y0, x1, y1);

@@ -25,6 +25,7 @@ typedef struct slot {
     int frame;
     bool skipped; // nothing to do, by --missing skip or --skip-existing
     const char *why;
+    int steps; // of its progress
     char input[PATH], output[PATH];
     frame_result result;
     error error;
@@ -33,19 +34,19 @@ typedef struct slot {
 
 typedef struct batch {
     job *j;
-    const volatile int *stop;
+    progress progress;
     frame_list frames;
     slot slots[BATCH_IN_FLIGHT];
     pthread_mutex_t lock;
     pthread_cond_t changed;
     bool give_up; // a frame failed, and nobody asked to keep going
     int done, failed, skipped;
-    char failures[512]; // their numbers
+    frame_list failures;
 } batch;
 
 bool batch_is(const options *o) { return o->frames || (o->input_count > 0 && pattern_is(o->inputs[0])); }
 
-static bool stopping(const batch *b) { return (b->stop && *b->stop) || b->give_up; }
+static bool stopping(const batch *b) { return job_stopped(b->j) || b->give_up; }
 
 // Waits for a slot's turn.
 static slot *take(batch *b, int index, state wanted)
@@ -73,6 +74,12 @@ static bool locked_stopping(batch *b)
     return s;
 }
 
+static void step(batch *b, slot *s)
+{
+    s->steps++;
+    progress_step(&b->progress);
+}
+
 static void skip(slot *s, const char *why)
 {
     s->skipped = true;
@@ -84,6 +91,7 @@ static void read_slot(batch *b, slot *s, int frame)
     const options *o = b->j->o;
     s->frame = frame;
     s->skipped = false;
+    s->steps = 0;
     s->error = (error){0};
     s->result = (frame_result){0};
     clock_gettime(CLOCK_MONOTONIC, &s->started);
@@ -100,7 +108,7 @@ static void read_slot(batch *b, slot *s, int frame)
     } else if (o->skip_existing && resume_is_done(b->j, s->output)) {
         skip(s, "already done");
     } else {
-        frame_read(b->j, s->input, &s->result, &s->error);
+        if (frame_read(b->j, s->input, &s->result, &s->error)) step(b, s);
     }
 }
 
@@ -124,27 +132,24 @@ static void *reader(void *arg)
 static void note_failure(batch *b, const slot *s)
 {
     char text[1600];
-    size_t used = strlen(b->failures);
     err_format(&s->error, text, sizeof text);
-    fprintf(stderr, "ssdo-filter: frame %d: %s\n", s->frame, text);
-    snprintf(b->failures + used, sizeof b->failures - used, "%s%d", b->failed ? ", " : "", s->frame);
+    log_error(b->j->log, "frame %d: %s", s->frame, text);
+    b->failures.frames[b->failures.count++] = s->frame;
     pthread_mutex_lock(&b->lock);
     b->failed++;
     if (!b->j->o->keep_going) b->give_up = true;
     pthread_mutex_unlock(&b->lock);
 }
 
-static void summary(const batch *b, const slot *s, int index)
+static void summary(batch *b, const slot *s, int index)
 {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     double seconds = (double)(t.tv_sec - s->started.tv_sec) + 1e-9 * (double)(t.tv_nsec - s->started.tv_nsec);
-    if (b->j->log->level == LOG_QUIET) return;
     if (s->skipped)
-        printf("frame %d (%d of %d): skipped, %s\n", s->frame, index + 1, b->frames.count, s->why);
+        progress_line(&b->progress, "frame %d (%d of %d): skipped, %s", s->frame, index + 1, b->frames.count, s->why);
     else
-        printf("frame %d (%d of %d): %s, %.2f s\n", s->frame, index + 1, b->frames.count, s->output, seconds);
-    fflush(stdout);
+        progress_line(&b->progress, "frame %d (%d of %d): %s, %.2f s", s->frame, index + 1, b->frames.count, s->output, seconds);
 }
 
 static bool write_extras(const batch *b, const slot *s, error *e)
@@ -160,8 +165,10 @@ static bool write_extras(const batch *b, const slot *s, error *e)
 static void write_slot(batch *b, slot *s, int index)
 {
     if (s->skipped && !s->why) return; // dropped by a stop
-    if (!s->skipped && s->error.code == ERR_NONE && frame_write(b->j, &s->result, s->output, &s->error))
-        write_extras(b, s, &s->error);
+    if (!s->skipped && s->error.code == ERR_NONE && frame_write(b->j, &s->result, s->output, &s->error) &&
+        write_extras(b, s, &s->error))
+        step(b, s);
+    progress_finish(&b->progress, PROGRESS_STEPS - s->steps);
     if (s->error.code != ERR_NONE) {
         note_failure(b, s);
     } else {
@@ -195,11 +202,11 @@ static void filter_all(batch *b, bool read_here, bool write_here)
         if (read_here) read_one(b, i);
         slot *s = take(b, i, WAS_READ);
         if (!s->skipped && s->error.code == ERR_NONE) {
-            if (locked_stopping(b)) {
+            if (!locked_stopping(b) && frame_filter(b->j, &s->result, &s->error)) {
+                step(b, s);
+            } else if (s->error.code == ERR_NONE) {
                 frame_free(&s->result);
                 skip(s, NULL);
-            } else {
-                frame_filter(b->j, &s->result, &s->error);
             }
         }
         pass_on(b, s, FILTERED);
@@ -240,16 +247,31 @@ static bool fix_radius(job *j, error *e)
     return true;
 }
 
-bool batch_run(job *j, const volatile int *stop, error *e)
+// What is said once all frames have had their turn.
+static bool conclude(const batch *b, error *e)
+{
+    char list[512];
+    int count = b->frames.count, finished = b->done + b->skipped;
+    if (job_stopped(b->j))
+        log_warn(b->j->log, "stopped",
+                 "stopped: %d of %d frames are finished; the same command with --skip-existing does the rest", finished, count);
+    if (!b->failed) return true;
+    frames_format(&b->failures, list, sizeof list);
+    return err_set(e, ERR_FRAMES, NULL, NULL, "%d of %d frames failed: %s", b->failed, count, list);
+}
+
+bool batch_run(job *j, error *e)
 {
     batch *b = mem_zero(1, sizeof *b, e);
     pthread_t threads[2];
     if (!b) return false;
     b->j = j;
-    b->stop = stop;
     pthread_mutex_init(&b->lock, NULL);
     pthread_cond_init(&b->changed, NULL);
     bool ok = list_frames(j->o, &b->frames, e) && fix_radius(j, e);
+    b->failures.frames = ok ? mem_zero((size_t)b->frames.count, sizeof *b->failures.frames, e) : NULL;
+    ok = ok && b->failures.frames;
+    if (ok) progress_begin(&b->progress, j->o->progress, b->frames.count, j->log);
     bool reading = ok && pthread_create(&threads[0], NULL, reader, b) == 0;
     bool writing = reading && pthread_create(&threads[1], NULL, writer, b) == 0;
     if (ok) {
@@ -257,9 +279,10 @@ bool batch_run(job *j, const volatile int *stop, error *e)
         filter_all(b, !reading, !writing);
         if (reading) pthread_join(threads[0], NULL);
         if (writing) pthread_join(threads[1], NULL);
-        if (b->failed)
-            ok = err_set(e, ERR_FRAMES, NULL, NULL, "%d of %d frames failed: %s", b->failed, b->frames.count, b->failures);
+        progress_end(&b->progress);
+        ok = conclude(b, e);
     }
+    frames_free(&b->failures);
     frames_free(&b->frames);
     pthread_cond_destroy(&b->changed);
     pthread_mutex_destroy(&b->lock);

@@ -14,9 +14,9 @@ enum { BATCH_IN_FLIGHT = 3 };
 bool batch_is(const options *o);
 
 // Runs the sequence. A frame that fails leaves its target as it was; with --keep-going the next frames are done all the same. At
-// the end ERR_FRAMES lists what failed. One summary line a frame on standard output, unless quiet. `stop` (may be NULL) is looked
-// at between stages: when it becomes non-zero, frames under way are dropped unless they are already being written, and the batch
+// the end ERR_FRAMES lists what failed, as --frames takes it. One summary line a frame on standard output, unless quiet. When the
+// job is stopped, frames under way are dropped unless they are already being written, a line says how far it got, and the batch
 // ends with no error of its own.
-bool batch_run(job *j, const volatile int *stop, error *e);
+bool batch_run(job *j, error *e);
 
 #endif

@@ -108,11 +108,12 @@ bool filter_frame(job *j, frame_result *r, error *e)
     c.want_radiance = r->plan.want_radiance;
     c.want_visibility = r->plan.want_visibility && r->plan.method->fills_radiance;
     for (int k = 0; k < 3; k++) c.stored_sh[k] = r->stored_sh[k];
+    c.tiles.stop = j->stop;
     c.want_diffuse = r->plan.layers & 1u << LAYER_DIFFUSE;
     bool ok = run_passes(&c, &r->plan, e) && gpu_finish(&j->g, "the passes", e);
     r->wall_ms[STAGE_PASSES] = milliseconds(CLOCK_MONOTONIC) - wall;
     r->cpu_ms[STAGE_PASSES] = milliseconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
-    ok = ok && read_layers(&c, r, e) && gpu_finish(&j->g, "the read-back", e);
+    ok = ok && !job_stopped(j) && read_layers(&c, r, e) && gpu_finish(&j->g, "the read-back", e);
     r->wall_ms[STAGE_READ_BACK] = milliseconds(CLOCK_MONOTONIC) - wall - r->wall_ms[STAGE_PASSES];
     r->cpu_ms[STAGE_READ_BACK] = milliseconds(CLOCK_PROCESS_CPUTIME_ID) - cpu - r->cpu_ms[STAGE_PASSES];
     memcpy(r->timings, c.timings, sizeof r->timings);

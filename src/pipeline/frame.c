@@ -39,6 +39,8 @@ bool job_open(job *j, const options *o, log_t *log, error *e)
     return gpu_open(&j->g, o->device, log, e);
 }
 
+bool job_stopped(const job *j) { return j->stop && *j->stop; }
+
 void job_close(job *j)
 {
     gpu_image_free(&j->env_image);
@@ -236,7 +238,14 @@ bool frame_run(job *j, const char *input, const char *output, frame_result *r, e
     *r = (frame_result){0};
     if (exr_same_file(input, output))
         return err_set(e, ERR_USAGE, output, NULL, "the output is the input file; name another output, so that nothing is lost");
-    return frame_read(j, input, r, e) && frame_filter(j, r, e) && frame_write(j, r, output, e);
+    if (!frame_read(j, input, r, e)) return false;
+    progress_step(j->progress);
+    if (job_stopped(j) || !frame_filter(j, r, e)) return false;
+    progress_step(j->progress);
+    if (!frame_write(j, r, output, e)) return false;
+    progress_step(j->progress);
+    progress_finish(j->progress, 0);
+    return true;
 }
 
 bool frame_measure_radius(const job *j, const char *input, double *radius, error *e)

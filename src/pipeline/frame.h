@@ -4,6 +4,7 @@
 
 #include "base/log.h"
 #include "cli/options.h"
+#include "cli/progress.h"
 #include "gbuffer/gbuffer.h"
 #include "gpu/gpu.h"
 #include "light/environment.h"
@@ -20,7 +21,9 @@ typedef struct job {
     environment env;
     gpu_image env_image;
     pass_sunless sunless;
-    double shot_radius; // automatic radius of the whole sequence; 0: each frame has its own
+    const volatile int *stop; // borrowed, may be NULL: once it is not zero, frames are dropped unless they are being written
+    progress *progress;       // borrowed, may be NULL
+    double shot_radius;       // automatic radius of the whole sequence; 0: each frame has its own
 } job;
 
 typedef enum stage { STAGE_READ, STAGE_RESOLVE, STAGE_PASSES, STAGE_READ_BACK, STAGE_WRITE, STAGE_COUNT } stage;
@@ -45,10 +48,14 @@ typedef struct frame_result {
     bool second_part;
 } frame_result;
 
+// stop and progress are the caller's to set afterwards.
 bool job_open(job *j, const options *o, log_t *log, error *e);
+// True if the run was asked to stop.
+bool job_stopped(const job *j);
 void job_close(job *j);
 
-// The three stages of a frame, to be called in this order on one result; after a failure only frame_free. Reading and writing may
+// The three stages of a frame, to be called in this order on one result; after a failure only frame_free. When the job is stopped
+// before the passes have ended, filtering returns false without an error. Reading and writing may
 // run on other threads than filtering, which belongs to the context's thread; of one job no stage runs twice at a time.
 bool frame_read(const job *j, const char *input, frame_result *result, error *e); // starts by zeroing the result
 bool frame_filter(job *j, frame_result *result, error *e);

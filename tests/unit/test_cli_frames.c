@@ -99,8 +99,31 @@ static void scanning(void **state)
     assert_int_equal(system(command), 0);
 }
 
+static void a_list_reads_back(void **state)
+{
+    (void)state;
+    int frames[] = {3, 7, 10, 11, 12, 13, 20, 21, -2};
+    frame_list l = {frames, 9}, back;
+    error e = {0};
+    char text[64], tight[25];
+    frames_format(&l, text, sizeof text);
+    assert_string_equal(text, "3, 7, 10-13, 20, 21, -2");
+    assert_true(frames_parse(text, &back, &e));
+    assert_int_equal(back.count, 9);
+    assert_memory_equal(back.frames, frames, sizeof frames);
+    frames_free(&back);
+    frames_format(&l, tight, sizeof tight); // room for ", ..." until the last is reached
+    assert_string_equal(tight, text);
+    frames_format(&l, tight, sizeof tight - 1);
+    assert_string_equal(tight, "3, 7, 10-13, 20, ...");
+    l.count = 0;
+    frames_format(&l, text, sizeof text);
+    assert_string_equal(text, "");
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(ranges), cmocka_unit_test(patterns), cmocka_unit_test(scanning)};
-    return cmocka_run_group_tests_name("frames", tests, NULL, NULL);
+    const struct CMUnitTest tests[] = {cmocka_unit_test(ranges), cmocka_unit_test(patterns), cmocka_unit_test(scanning),
+                                       cmocka_unit_test(a_list_reads_back)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,44 @@
+#!/bin/sh
+# Signals and progress, as a farm sees them: SIGTERM drops a frame that would take minutes, SIGINT twice ends at once, and neither
+# leaves a file behind; the Open Job Description lines tell the percents and the failure.
+set -u
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+die() { echo "FAILED: $*"; exit 1; }
+long="--samples 65536 --method ssdo --layers occlusion --keep none" # minutes on any CPU
+
+# The line "pass ..." of -v says that the passes begin.
+begin() {
+    "$SSDO" -v samples/still.exr -o "$dir/out.exr" $long 2>"$dir/err" &
+    pid=$!
+    until grep -q '^ssdo-filter: pass' "$dir/err"; do
+        kill -0 $pid 2>/dev/null || die "ended by itself: $(cat "$dir/err")"
+        sleep 0.1
+    done
+    sleep 0.5
+}
+begin
+kill -TERM $pid
+wait $pid
+code=$?
+[ $code = 143 ] || die "SIGTERM gave exit code $code"
+begin
+kill -INT $pid
+kill -INT $pid
+wait $pid
+code=$?
+[ $code = 130 ] || die "SIGINT twice gave exit code $code"
+[ "$(ls -A "$dir")" = err ] || die "files are left: $(ls -A "$dir")"
+
+# One good frame, one that is missing.
+cp samples/still.exr "$dir/f.0001.exr"
+"$SSDO" -q "$dir/f.####.exr" -o "$dir/o.####.exr" --samples 4 --frames 1-2 --keep-going --progress openjd >"$dir/log" 2>/dev/null
+code=$?
+[ $code = 1 ] || die "exit code $code with a missing frame"
+for line in '^openjd_progress: 0$' '^openjd_progress: 100$' '^openjd_status: frame 1 (1 of 2)' '^openjd_fail: 1 of 2 frames failed: 2$'; do
+    grep -q "$line" "$dir/log" || die "no line '$line' in: $(cat "$dir/log")"
+done
+[ "$(grep -vc '^openjd_' "$dir/log")" = 0 ] || die "other lines: $(cat "$dir/log")"
+# A usage error is told too, and a single frame has its percents.
+"$SSDO" --progress openjd 2>/dev/null | grep -q '^openjd_fail: no input file' || die "no openjd_fail for wrong usage"
+"$SSDO" -q "$dir/f.0001.exr" -o "$dir/o.exr" --samples 4 --progress alf | tail -1 | grep -qx 'ALF_PROGRESS 100%' || die "no ALF_PROGRESS"
