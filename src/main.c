@@ -47,6 +47,7 @@ static int list_devices(void)
     gpu_device list[32];
     int n = gpu_list_devices(list, 32);
     for (int i = 0; i < n; i++) printf("%d  %s\n", i, list[i].description);
+    if (gpu_missing_device()) printf("note: %s\n", gpu_missing_device());
     if (n == 0) puts("no EGL devices; the surfaceless platform may still work");
     return 0;
 }

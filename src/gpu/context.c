@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gpu/choose.h"
 #include "gpu/gpu.h"
 #include "gpu/internal.h"
 
@@ -71,6 +72,7 @@ static bool try_display(gpu *g, EGLDisplay display, const char *platform)
     g->context = context;
     g->robust = robust;
     snprintf(g->renderer, sizeof g->renderer, "%s", (const char *)glGetString(GL_RENDERER));
+    gpu_device_name(g->renderer, g->device, sizeof g->device);
     snprintf(g->version, sizeof g->version, "%s", (const char *)glGetString(GL_VERSION));
     snprintf(g->platform, sizeof g->platform, "%s", platform);
     g->software = strstr(g->renderer, "llvmpipe") || strstr(g->renderer, "softpipe") || strstr(g->renderer, "SWR");
@@ -94,17 +96,54 @@ static bool is_software(EGLDeviceEXT device)
     return has_token(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
 }
 
+// EGL_EXT_device_persistent_id, which libepoxy does not know.
+static bool query_uuid(EGLDeviceEXT device, const char *extensions, unsigned char uuid[16])
+{
+    enum { DEVICE_UUID_EXT = 0x335C };
+    typedef EGLBoolean (*query_fn)(EGLDeviceEXT, EGLint, EGLint, void *, EGLint *);
+    EGLint size = 0;
+    if (!has_token(extensions, "EGL_EXT_device_persistent_id")) return false;
+    query_fn query = (query_fn)eglGetProcAddress("eglQueryDeviceBinaryEXT");
+    return query && query(device, DEVICE_UUID_EXT, 16, uuid, &size) && size == 16;
+}
+
+static gpu_candidate describe(EGLDeviceEXT device)
+{
+    const char *extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+    gpu_candidate c = {.software = is_software(device), .nvidia = has_token(extensions, "EGL_NV_device_cuda"), .cuda = -1};
+    EGLAttrib number = 0;
+    if (c.nvidia && eglQueryDeviceAttribEXT(device, EGL_CUDA_DEVICE_NV, &number)) c.cuda = (int)number;
+    c.has_uuid = query_uuid(device, extensions, c.uuid);
+    return c;
+}
+
+static const char *missing_among(EGLDeviceEXT *devices, int count)
+{
+    gpu_surroundings s = gpu_look_around("");
+    for (int i = 0; i < count; i++) s.listed |= describe(devices[i]).nvidia;
+    return gpu_missing_vendor(&s);
+}
+
+const char *gpu_missing_device(void)
+{
+    EGLDeviceEXT devices[MAX_DEVICES];
+    return missing_among(devices, have_egl() ? query_devices(devices) : 0);
+}
+
 static bool open_device(gpu *g, EGLDeviceEXT device)
 {
     return try_display(g, eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, NULL), "EGL device");
 }
 
-// Hardware devices in their order, then the software ones, then the surfaceless platform, which needs no device.
+// The devices in the order of gpu_choose, then the surfaceless platform, which needs no device.
 static bool open_first(gpu *g, EGLDeviceEXT *devices, int count)
 {
-    for (int software = 0; software < 2; software++)
-        for (int i = 0; i < count; i++)
-            if (is_software(devices[i]) == (software == 1) && open_device(g, devices[i])) return true;
+    gpu_candidate list[MAX_DEVICES];
+    int order[MAX_DEVICES];
+    for (int i = 0; i < count; i++) list[i] = describe(devices[i]);
+    int n = gpu_choose(list, count, getenv("CUDA_VISIBLE_DEVICES"), order);
+    for (int i = 0; i < n; i++)
+        if (open_device(g, devices[order[i]])) return true;
     if (!has_token(client_extensions(), "EGL_MESA_platform_surfaceless")) return false;
     return try_display(g, eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL), "EGL surfaceless");
 }
@@ -119,12 +158,14 @@ bool gpu_open(gpu *g, int device, log_t *log, error *e)
     int count = query_devices(devices);
     if (device >= count)
         return err_set(e, ERR_GL, NULL, NULL, "there is no device %d; --list-devices shows the %d there are", device, count);
-    if (device >= 0 ? !open_device(g, devices[device]) : !open_first(g, devices, count))
-        return err_set(e, ERR_GL, NULL, NULL,
-                       device >= 0 ? "EGL device %d gives no OpenGL 4.5 core context; --list-devices shows which do"
-                                   : "no EGL device or surfaceless platform gives an OpenGL 4.5 core context; install a driver "
-                                     "(Debian: libegl-mesa0 libgl1-mesa-dri) and see --list-devices",
+    if (device >= 0 && !open_device(g, devices[device]))
+        return err_set(e, ERR_GL, NULL, NULL, "EGL device %d gives no OpenGL 4.5 core context; --list-devices shows which do",
                        device);
+    const char *missing = device < 0 ? missing_among(devices, count) : NULL;
+    if (device < 0 && !open_first(g, devices, count))
+        return err_set(e, ERR_GL, NULL, NULL, "no EGL device or surfaceless platform gives an OpenGL 4.5 core context; %s",
+                       missing ? missing : "install a driver (Debian: libegl-mesa0 libgl1-mesa-dri) and see --list-devices");
+    if (device < 0 && g->software && missing) log_warn(log, "nvidia", "running on the CPU: %s", missing);
     log_info(log, "device: %s, %s (%s%s)", g->renderer, g->version, g->platform, g->software ? ", software" : "");
     return true;
 }

@@ -17,9 +17,10 @@ typedef struct gpu_program_entry gpu_program_entry;
 typedef struct gpu {
     void *display, *context; // EGLDisplay, EGLContext
     char renderer[160], version[96], platform[48];
-    bool software; // a software rasteriser
-    int max_size;  // largest texture side
-    bool robust;   // the context reports resets
+    char device[160]; // the renderer's name alone: results are the same bytes on the same device
+    bool software;    // a software rasteriser
+    int max_size;     // largest texture side
+    bool robust;      // the context reports resets
     gpu_program_entry *programs;
     int program_count;
 } gpu;
@@ -30,13 +31,17 @@ typedef struct gpu_device {
     bool software, usable;
 } gpu_device;
 
-// Opens device number `device` (as listed), or with -1 the first usable one, hardware before software, falling back to the
-// surfaceless platform. Says on the log which one.
+// Opens device number `device` (as listed), or with -1 the first usable one in the order of gpu/choose.h, falling back to the
+// surfaceless platform. Says on the log which one, and warns when a software device is taken where an NVIDIA GPU lacks its
+// driver.
 bool gpu_open(gpu *g, int device, log_t *log, error *e);
 void gpu_close(gpu *g);
 
 // Fills up to `max` devices, returns how many there are. Each is initialised and tried.
 int gpu_list_devices(gpu_device *list, int max);
+
+// Why an NVIDIA GPU of this machine is not among the devices, or NULL (gpu/choose.h).
+const char *gpu_missing_device(void);
 
 // ---- programs
 // ------------------------------------------------------------------------------------------------------------------- The compute

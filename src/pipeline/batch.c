@@ -15,7 +15,7 @@
 #include "pipeline/report.h"
 #include "pipeline/resume.h"
 
-enum { PATH = 4096 };
+enum { PATH = 4096, NEIGHBOURS = 256 };
 
 typedef enum state { EMPTY, WAS_READ, FILTERED } state;
 
@@ -247,6 +247,29 @@ static bool fix_radius(job *j, error *e)
     return true;
 }
 
+static bool holds(const frame_list *l, int frame)
+{
+    for (int i = 0; i < l->count; i++)
+        if (l->frames[i] == frame) return true;
+    return false;
+}
+
+// The device of a frame of the shot that this run does not make again: the first such among the first NEIGHBOURS outputs.
+static void compare_device(const batch *b)
+{
+    frame_list existing;
+    char path[PATH];
+    error ignored = {0};
+    if (!pattern_scan(b->j->o->output, &existing, &ignored)) return;
+    for (int i = 0; i < existing.count && i < NEIGHBOURS; i++) {
+        if (holds(&b->frames, existing.frames[i]) || !pattern_path(b->j->o->output, existing.frames[i], path, sizeof path))
+            continue;
+        resume_check_device(b->j, path);
+        break;
+    }
+    frames_free(&existing);
+}
+
 // What is said once all frames have had their turn.
 static bool conclude(const batch *b, error *e)
 {
@@ -271,6 +294,7 @@ bool batch_run(job *j, error *e)
     bool ok = list_frames(j->o, &b->frames, e) && fix_radius(j, e);
     b->failures.frames = ok ? mem_zero((size_t)b->frames.count, sizeof *b->failures.frames, e) : NULL;
     ok = ok && b->failures.frames;
+    if (ok) compare_device(b);
     if (ok) progress_begin(&b->progress, j->o->progress, b->frames.count, j->log);
     bool reading = ok && pthread_create(&threads[0], NULL, reader, b) == 0;
     bool writing = reading && pthread_create(&threads[1], NULL, writer, b) == 0;

@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "exr/write.h"
 
-enum { MAX_OURS = LAYER_COUNT * 4 + 1, NAME_SIZE = 96, MAX_ATTRS = 8 };
+enum { MAX_OURS = LAYER_COUNT * 4 + 1, NAME_SIZE = 96, MAX_ATTRS = 10 };
 
 // Everything exr_write borrows.
 typedef struct assembly {
@@ -145,6 +145,7 @@ static void add_attributes(assembly *a, const job *j, const frame_result *r)
              c->kind == CAMERA_ORTHOGRAPHIC ? "orthographic" : "perspective", c->fx, c->fy, c->cx, c->cy, sources[c->source]);
     add_attr(a, "ssdo/camera", EXR_OUT_STRING)->string = a->camera;
     add_attr(a, "ssdo/radius", EXR_OUT_FLOAT)->number = r->set.radius;
+    add_attr(a, "ssdo/device", EXR_OUT_STRING)->string = j->g.device;
     add_attr(a, "ssdo/method", EXR_OUT_STRING)->string = r->plan.method->name;
     snprintf(a->environment, sizeof a->environment, "%s", j->o->env ? base_name(j->o->env) : "white, radiance 1");
     if (r->plan.light) add_attr(a, "ssdo/environment", EXR_OUT_STRING)->string = a->environment;

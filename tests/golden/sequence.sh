@@ -26,6 +26,18 @@ before=$(ls "$dir/c" | wc -l)
 "$SSDO" -q "$dir/in/f.####.exr" -o "$dir/c/f.####.exr" --skip-existing || die "completing"
 for i in 1 2 3 4 5 6; do cmp "$dir/a/f.000$i.exr" "$dir/c/f.000$i.exr" || die "frame $i differs after resuming"; done
 
+# A frame from another device counts as done, with a warning; so does one that another task has made.
+device=$(exrheader "$dir/a/f.0002.exr" | sed -n 's/^ssdo.device .*: "\(.*\)"$/\1/p')
+other=$(echo "$device" | sed 's/./X/g') # of the same length, so that the file stays sound
+[ -n "$device" ] && LC_ALL=C sed "s|$device|$other|" "$dir/a/f.0002.exr" >"$dir/c/f.0002.exr" || die "no ssdo/device in the header"
+"$SSDO" "$dir/in/f.####.exr" -o "$dir/c/f.####.exr" --skip-existing --frames 1-3 >"$dir/log" 2>&1 || die "another device"
+[ "$(grep -c 'skipped, already done' "$dir/log")" = 3 ] || die "a frame of another device was made again: $(cat "$dir/log")"
+[ "$(grep -c "made on '$other'" "$dir/log")" = 1 ] || die "no warning of another device: $(cat "$dir/log")"
+rm "$dir/c/f.0001.exr"
+"$SSDO" "$dir/in/f.####.exr" -o "$dir/c/f.####.exr" --frames 1 2>&1 | grep -q "made on '$other'" || die "no warning of a neighbour's device"
+cp "$dir/a/f.0002.exr" "$dir/c/f.0002.exr"
+"$SSDO" "$dir/in/f.####.exr" -o "$dir/c/f.####.exr" --frames 1 2>&1 | grep -q "made on" && die "a warning of the same device"
+
 # Other settings are not 'already done'; a damaged output is done again.
 "$SSDO" "$dir/in/f.####.exr" -o "$dir/c/f.####.exr" --skip-existing --frames 1-2 --samples 8 2>&1 | grep -q skipped && die "other settings were taken for the same"
 "$SSDO" -q "$dir/in/f.####.exr" -o "$dir/c/f.####.exr" --frames 1-2 || die "redoing"
