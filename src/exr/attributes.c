@@ -13,6 +13,18 @@ static const exr_attribute_t *find(const exr_file *file, int part, const char *n
 
 bool exr_attr_exists(const exr_file *file, int part, const char *name) { return find(file, part, name) != NULL; }
 
+bool exr_attr_begins(const exr_file *file, int part, const char *beginning, size_t n)
+{
+    int32_t count = 0;
+    if (exr_get_attribute_count(file->core, part, &count) != EXR_ERR_SUCCESS) return false;
+    for (int32_t i = 0; i < count; i++) {
+        const exr_attribute_t *a = NULL;
+        if (exr_get_attribute_by_index(file->core, part, EXR_ATTR_LIST_FILE_ORDER, i, &a) != EXR_ERR_SUCCESS) return false;
+        if (strncmp(a->name, beginning, n) == 0) return true;
+    }
+    return false;
+}
+
 bool exr_attr_string(const exr_file *file, int part, const char *name, const char **value)
 {
     const exr_attribute_t *a = find(file, part, name);

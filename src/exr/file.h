@@ -70,5 +70,6 @@ bool exr_attr_m44(const exr_file *file, int part, const char *name, double m[4][
 bool exr_attr_v2(const exr_file *file, int part, const char *name, double v[2]);     // v2f
 bool exr_attr_chromaticities(const exr_file *file, int part, double xy[8]);          // red, green, blue, white: x y each
 bool exr_attr_exists(const exr_file *file, int part, const char *name);
+bool exr_attr_begins(const exr_file *file, int part, const char *beginning, size_t n); // any name with these n bytes in front
 
 #endif

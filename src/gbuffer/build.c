@@ -95,6 +95,8 @@ static bool summarise(build *b)
                  "no usable normals in the file: they are rebuilt from depth and show its facets "
                  "(--normal names a channel)");
     if (g->position_is_camera_space) g->camera.has_world = false;
+    if (b->has_header_pose)
+        g->camera.world_from_camera = b->world_from_camera, g->camera.origin = b->eye, g->camera.has_world = true;
     return true;
 }
 
@@ -102,9 +104,9 @@ bool gbuffer_build(const exr_file *file, const resolution *r, const gbuffer_opti
 {
     *out = (gbuffer){0};
     build b = {.file = file, .r = r, .options = options, .g = out, .log = log, .e = e, .row = convention_named(r->convention)};
-    bool done = open_frame(&b) && validity_classify(&b) && validity_sample(&b) && choose_camera(&b) && positions_raw(&b);
+    bool done = open_frame(&b) && validity_classify(&b) && validity_sample(&b) && choose_camera(&b) && positions_raw(&b) &&
+                measure_normals(&b);
     if (done) {
-        measure_normals(&b);
         positions_final(&b);
         normals_make(&b);
         done = coverage_make(&b) && colours_make(&b) && summarise(&b);

@@ -5,6 +5,7 @@
 #include <stdint.h>
 
 #include "base/half.h"
+#include "gbuffer/camera_header.h"
 #include "gbuffer/conventions.h"
 #include "gbuffer/gbuffer.h"
 
@@ -59,9 +60,13 @@ typedef struct build {
     double far_pixels;   // P further than this from its pixel is not believed
     bool lateral;        // P is fine enough to tell where in its pixel it was sampled
 
-    space normal_space;
+    bool has_rotation;    // the camera's world_from_camera is that of a flag or of the positions
+    bool has_header_pose; // else: the header's, which nothing has confirmed yet
+    header_pose pose;
+    mat3 world_from_camera; // has_header_pose: the camera's in the end
+    vec3 eye;
+    mat3 normal_to_camera; // takes the file's normals to camera space
     bool normal_unorm;
-    double normal_sign_y, normal_sign_z; // camera-space normals: signs that lead to our axes
 } build;
 
 // The channel of a role's component, data NULL when it is absent or was not loaded.
@@ -79,14 +84,6 @@ static inline size_t build_index(const build *b, int x, int y) { return (size_t)
 static inline vec3 build_position(const build *b, int x, int y)
 {
     return v3(plane_get(&b->position[0], x, y), plane_get(&b->position[1], x, y), plane_get(&b->position[2], x, y));
-}
-
-// A world direction in camera space.
-static inline vec3 build_rotate(const camera *c, vec3 d)
-{
-    const double(*m)[3] = c->world_from_camera.m;
-    return v3(m[0][0] * d.x + m[1][0] * d.y + m[2][0] * d.z, m[0][1] * d.x + m[1][1] * d.y + m[2][1] * d.z,
-              m[0][2] * d.x + m[1][2] * d.y + m[2][2] * d.z);
 }
 
 // Direction with z = 1 (perspective) through the centre of the pixel; orthographic: (0, 0, 1).
@@ -112,7 +109,7 @@ bool choose_camera(build *b);
 
 // measure.c: what Z is, and whether it or P gives the depth; what the normals are.
 bool measure_depth(build *b);
-void measure_normals(build *b);
+bool measure_normals(build *b);
 
 // positions.c: planar depth of every pixel.
 bool positions_raw(build *b);

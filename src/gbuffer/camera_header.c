@@ -1,5 +1,9 @@
 #include "gbuffer/camera_header.h"
 
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
 #include "gbuffer/camera_solve.h"
 
 static const double most_error = 0.5; // pixels
@@ -61,4 +65,82 @@ bool camera_from_ndc(double m[4][4], box2 data, box2 display, const camera_point
         out->world_from_camera = m3_identity(), out->origin = v3(0, 0, 0);
     }
     return found;
+}
+
+// A number, or a text that begins with one.
+static bool number_of(const exr_file *file, int part, const char *name, double *value)
+{
+    const char *text;
+    if (exr_attr_float(file, part, name, value)) return isfinite(*value);
+    if (!exr_attr_string(file, part, name, &text)) return false;
+    char *end;
+    *value = strtod(text, &end); // main() keeps the C locale for numbers
+    return end != text && isfinite(*value);
+}
+
+bool camera_from_lens(const exr_file *file, int part, const header_camera *where, box2 data, box2 display, double pixel_aspect,
+                      camera *out)
+{
+    double fov;
+    if (!file->core || !where->fov || !number_of(file, part, where->fov, &fov)) return false;
+    if (where->radians) fov *= 57.295779513082320877;
+    if (!(fov > 0.0 && fov < 180.0)) return false;
+    camera_from_fov(fov, data, display, pixel_aspect, out);
+    out->source = CAMERA_FROM_HEADER;
+    return true;
+}
+
+// "beginning" + "Rot/yaw" and so on, "Pos/x" and so on. Unreal's rotator: x forward, y right, z up, left-handed; yaw about z,
+// then pitch up, then roll clockwise. The columns made here are right, up, forward.
+static bool pose_from_angles(const exr_file *file, int part, const char *beginning, header_pose *out)
+{
+    static const char *const names[6] = {"Rot/yaw", "Rot/pitch", "Rot/roll", "Pos/x", "Pos/y", "Pos/z"};
+    double v[6];
+    for (int i = 0; i < 6; i++) {
+        char name[128];
+        snprintf(name, sizeof name, "%s%s", beginning, names[i]);
+        if (!number_of(file, part, name, &v[i])) return false;
+        if (i < 3) v[i] *= 0.017453292519943295769;
+    }
+    double cy = cos(v[0]), sy = sin(v[0]), cp = cos(v[1]), sp = sin(v[1]), cr = cos(v[2]), sr = sin(v[2]);
+    out->axes = (mat3){{{sr * sp * cy - cr * sy, -(cr * sp * cy + sr * sy), cp * cy},
+                        {sr * sp * sy + cr * cy, cy * sr - cr * sp * sy, cp * sy},
+                        {-sr * cp, cr * cp, sp}}};
+    out->eye = out->inverse_eye = v3(v[3], v[4], v[5]);
+    return true;
+}
+
+static bool pose_from_matrix(const exr_file *file, int part, const header_camera *where, header_pose *out)
+{
+    double m[4][4];
+    if (!where->pose || !exr_attr_m44(file, part, where->pose, m)) return false;
+    mat3 r = {{{m[0][0], m[0][1], m[0][2]}, {m[1][0], m[1][1], m[1][2]}, {m[2][0], m[2][1], m[2][2]}}};
+    vec3 t = v3(m[3][0], m[3][1], m[3][2]), inverse = v3_scale(m3_apply(r, t), -1.0);
+    out->axes = where->world_to_camera ? r : m3_transpose(r);
+    out->eye = where->world_to_camera ? inverse : t;
+    out->inverse_eye = where->world_to_camera ? t : inverse;
+    return true;
+}
+
+static bool make_orthonormal(mat3 *m)
+{
+    vec3 columns[3];
+    for (int c = 0; c < 3; c++) {
+        columns[c] = v3_normalize(v3(m->m[0][c], m->m[1][c], m->m[2][c]));
+        if (!(v3_dot(columns[c], columns[c]) > 0.5)) return false;
+        m->m[0][c] = columns[c].x, m->m[1][c] = columns[c].y, m->m[2][c] = columns[c].z;
+    }
+    return fabs(v3_dot(columns[0], columns[1])) < 1e-3 && fabs(v3_dot(columns[1], columns[2])) < 1e-3 &&
+           fabs(v3_dot(columns[2], columns[0])) < 1e-3;
+}
+
+bool camera_header_pose(const exr_file *file, int part, const header_camera *where, header_pose *out)
+{
+    static const header_camera standard = {.pose = "worldToCamera", .world_to_camera = true, .looks_along_z = true};
+    if (!file->core) return false;
+    bool along = where->looks_along_z || where->angles;
+    bool found = (where->angles && pose_from_angles(file, part, where->angles, out)) || pose_from_matrix(file, part, where, out);
+    if (!found && pose_from_matrix(file, part, &standard, out)) found = along = true;
+    out->from_ours = (mat3){{{1, 0, 0}, {0, -1, 0}, {0, 0, along ? 1 : -1}}};
+    return found && make_orthonormal(&out->axes) && v3_finite(out->eye);
 }

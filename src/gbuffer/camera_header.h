@@ -1,8 +1,9 @@
-// The camera in the header's worldToNDC matrix. Internal to the room.
+// The camera in the header: worldToNDC, and the attributes of the convention table's rows. Internal to the room.
 #ifndef SSDO_GBUFFER_CAMERA_HEADER_H
 #define SSDO_GBUFFER_CAMERA_HEADER_H
 
 #include "gbuffer/camera.h"
+#include "gbuffer/conventions.h"
 
 // m: worldToNDC as stored (row vectors). Renderers differ (facts/ecosystem.md 1.2): 0..1 with y down, the standard's; -1..1 with
 // y up; w = -z; transposed; mirrored. With points, the reading that puts them at their pixels is taken, and none is if the median
@@ -11,5 +12,19 @@
 // its pose only if it makes a right-handed world, else has_world is false: a negated and a mirrored matrix look alike without
 // points.
 bool camera_from_ndc(double m[4][4], box2 data, box2 display, const camera_point *points, size_t count, camera *out);
+
+// The lens of a row's field of view attribute; no pose. False when there is none or it is not between 0 and 180 degrees.
+bool camera_from_lens(const exr_file *file, int part, const header_camera *where, box2 data, box2 display, double pixel_aspect,
+                      camera *out);
+
+// The pose of a row, or else of worldToCamera.
+typedef struct header_pose {
+    mat3 axes;             // columns: the header camera's axes in the world, unit length
+    mat3 from_ours;        // takes our camera axes to the header's, as the row says
+    vec3 eye, inverse_eye; // in the world; if the matrix was the inverse of what the row says
+} header_pose;
+
+// False when there is none or it is no rotation or reflection.
+bool camera_header_pose(const exr_file *file, int part, const header_camera *where, header_pose *out);
 
 #endif

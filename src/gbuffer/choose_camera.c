@@ -28,9 +28,14 @@ static bool from_header(const build *b, camera *out)
 {
     double m[4][4];
     const gbuffer *g = b->g;
-    if (!b->file->core || !exr_attr_m44(b->file, b->r->main_part, "worldToNDC", m)) return false;
+    if (!b->file->core) return false;
     size_t count = b->has_position ? b->point_count : 0;
-    return camera_from_ndc(m, g->data_window, g->display_window, b->points, count, out);
+    if (exr_attr_m44(b->file, b->r->main_part, "worldToNDC", m) &&
+        camera_from_ndc(m, g->data_window, g->display_window, b->points, count, out))
+        return true;
+    // A lens alone cannot be held against the positions.
+    return count == 0 &&
+           camera_from_lens(b->file, b->r->main_part, &b->row->camera, g->data_window, g->display_window, g->pixel_aspect, out);
 }
 
 static bool from_plane(build *b, camera *out, error *e)
@@ -139,6 +144,16 @@ static void describe(build *b)
                    100.0 * c->inliers);
 }
 
+// Only where nothing better says where the camera is in the world.
+static void find_header_pose(build *b, const camera *c)
+{
+    if (b->has_rotation && !b->g->position_is_camera_space) return;
+    b->has_header_pose = camera_header_pose(b->file, b->r->main_part, &b->row->camera, &b->pose);
+    if (b->has_header_pose || b->has_rotation || c->source != CAMERA_FROM_HEADER || !c->has_world) return;
+    b->pose = (header_pose){c->world_from_camera, m3_identity(), c->origin, c->origin};
+    b->has_header_pose = true;
+}
+
 static bool finish(build *b, camera *c)
 {
     if (b->has_position && c->has_world) {
@@ -148,10 +163,12 @@ static bool finish(build *b, camera *c)
             return err_set(b->e, ERR_MEMORY, NULL, NULL, "out of memory; try a smaller frame or fewer frames in flight");
     }
     b->far_pixels = fmax(3.0, 10.0 * c->residual);
+    b->has_rotation = b->has_pose || (c->source == CAMERA_FROM_FLAG && c->has_world);
     if (b->has_pose && c->source != CAMERA_FROM_FLAG && is_camera_space(b, c)) {
         b->g->position_is_camera_space = true;
-        build_note(b, "positions are in camera space: nothing says where the camera is in the world");
+        build_note(b, "positions are in camera space");
     }
+    find_header_pose(b, c);
     describe(b);
     return true;
 }

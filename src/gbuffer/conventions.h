@@ -7,9 +7,12 @@
 //                XYZ, RGB or red green blue for three; one of V Z X R Y T, red or nothing for one.
 //   "depth/Z"    the same, and only this component.
 //   "/"          the unnamed layer, whose channels have no dot (R, G, B, A); "/Z" its channel Z.
+//   "*/T"        any layer with the component T: for renderers whose layers are named by the user.
 // Earlier patterns of a role are preferred. Of the rows, one whose header mark is present wins; else the one that recognises most
 // roles (exact case counts a little more), the plain row winning ties. Roles the row does not find are looked for with the plain
 // row's patterns.
+//
+// A header mark is an attribute's name, the beginning of one ("arnold/*"), or "name=beginning of its text".
 #ifndef SSDO_GBUFFER_CONVENTIONS_H
 #define SSDO_GBUFFER_CONVENTIONS_H
 
@@ -19,12 +22,23 @@
 
 enum { CONVENTION_PATTERNS = 10, CONVENTION_MARKS = 4 };
 
+// Where a header keeps the camera, for files whose positions do not tell. worldToNDC and worldToCamera are read in any row.
+typedef struct header_camera {
+    const char *fov;      // horizontal field of view: a number, or a text that holds one
+    bool radians;         // else degrees
+    const char *pose;     // 4 x 4 for row vectors, camera to world
+    bool world_to_camera; // the pose is the other way round
+    bool looks_along_z;   // the pose's camera looks along +z (RenderMan), else along -z (OpenGL)
+    const char *angles;   // instead of a pose: what stands before "Rot/yaw" (degrees) and "Pos/x", Unreal's axes
+} header_camera;
+
 typedef enum space { SPACE_UNKNOWN, SPACE_WORLD, SPACE_CAMERA } space;
 typedef enum normal_encoding { NORMAL_SIGNED, NORMAL_UNORM } normal_encoding; // unorm: 0..1, n = 2 v - 1
 
 typedef struct convention {
     const char *name;
-    const char *marks[CONVENTION_MARKS]; // header attributes that only this renderer writes
+    bool confirmed;                      // by a file of the renderer itself, not only by its documentation
+    const char *marks[CONVENTION_MARKS]; // that only this renderer writes
     const char *patterns[ROLE_COUNT][CONVENTION_PATTERNS];
     const char *diffuse_albedo[4]; // those patterns of ROLE_ALBEDO that name a diffuse albedo; the others are `albedo`
     albedo_kind albedo;
@@ -34,6 +48,7 @@ typedef struct convention {
     depth_kind depth;
     double background_depth;
     bool up_is_z;
+    header_camera camera;
 } convention;
 
 extern const convention conventions[];

@@ -158,8 +158,10 @@ int layers_match(const layer_index *index, const char *pattern, int components, 
     for (int i = 0; i < index->count && found < most; i++) {
         const layer_entry *entry = &index->entries[i];
         layer_group group = {0};
-        size_t before;
-        if (!ends_in(entry->layer, name, &before, &group.exact) || !first_of_layer(index, i)) continue;
+        size_t before = 0;
+        bool any = strcmp(name, "*") == 0;
+        if (any) before = 0, group.exact = true;
+        if ((!any && !ends_in(entry->layer, name, &before, &group.exact)) || !first_of_layer(index, i)) continue;
         if (!collect(index, entry, components, slash ? slash + 1 : "", &group)) continue;
         make_key(entry, before, group.key);
         out[found++] = group;

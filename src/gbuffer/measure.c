@@ -108,71 +108,137 @@ bool measure_depth(build *b)
 
 // One way to read the normals.
 typedef struct reading {
-    space space;
+    mat3 to_camera;
     bool unorm;
-    double sign_y, sign_z;
-    double score; // mean cosine between the normals read so and those of the surface
+    const char *name;
+    bool from_header; // then to_camera is the header's rotation, its axes read so that the normals fit
+    bool inverse;     // and the matrix is the inverse of what the row says
+    double score;     // mean cosine between the normals read so and those of the surface
 } reading;
 
-static void apply(build *b, const reading *r)
-{
-    b->normal_space = r->space, b->normal_unorm = r->unorm;
-    b->normal_sign_y = r->sign_y, b->normal_sign_z = r->sign_z;
-}
+// Sampled normals as stored, and the surface's own at the same places.
+typedef struct evidence {
+    vec3 stored[NORMAL_SAMPLES], surface[NORMAL_SAMPLES];
+    size_t count;
+    bool may_be_unorm; // only if no sampled component lies outside 0..1 can they be coded that way
+} evidence;
 
-static double score(build *b, const reading *r)
+static void gather(build *b, evidence *v)
 {
     size_t stride = b->point_count / NORMAL_SAMPLES + 1;
-    double sum = 0.0, n = 0.0;
-    apply(b, r);
+    bool any = false;
+    v->may_be_unorm = true;
     for (size_t i = 0; i < b->point_count; i += stride) {
         int x = (int)b->points[i].x, y = (int)b->points[i].y;
-        vec3 normal;
-        if (!(b->raw[build_index(b, x, y)] > 0.0f) || !normals_read(b, x, y, &normal)) continue;
-        sum += v3_dot(normal, normals_from_depth(b, b->raw, x, y));
-        n += 1.0;
+        vec3 n = v3(plane_get(&b->normal[0], x, y), plane_get(&b->normal[1], x, y), plane_get(&b->normal[2], x, y));
+        double low = fmin(n.x, fmin(n.y, n.z)), high = fmax(n.x, fmax(n.y, n.z));
+        if (!(b->raw[build_index(b, x, y)] > 0.0f) || !v3_finite(n)) continue;
+        v->may_be_unorm = v->may_be_unorm && low >= -0.01 && high <= 1.01;
+        any = any || high > 0.0;
+        v->stored[v->count] = n, v->surface[v->count++] = normals_from_depth(b, b->raw, x, y);
+    }
+    v->may_be_unorm = v->may_be_unorm && any;
+}
+
+static double score(const evidence *v, const reading *r)
+{
+    double sum = 0.0, n = 0.0;
+    for (size_t i = 0; i < v->count; i++) {
+        vec3 s = v->stored[i];
+        if (r->unorm) s = v3(2.0 * s.x - 1.0, 2.0 * s.y - 1.0, 2.0 * s.z - 1.0);
+        s = v3_normalize(m3_apply(r->to_camera, s));
+        if (!(v3_dot(s, s) > 0.5)) continue;
+        sum += v3_dot(s, v->surface[i]), n += 1.0;
     }
     return n > 0.0 ? sum / n : 0.0;
 }
 
-// Only if no sampled component lies outside 0..1 can they be coded that way.
-static bool may_be_unorm(const build *b)
+static mat3 signs(double x, double y, double z) { return (mat3){{{x, 0, 0}, {0, y, 0}, {0, 0, z}}}; }
+
+// Tries a reading; the convention's own stays unless another fits the surface clearly better: a flat picture fits several.
+static void try_reading(const evidence *v, reading r, double first, reading *best)
 {
-    bool any = false;
-    for (size_t i = 0; i < b->point_count; i++)
-        for (int c = 0; c < 3; c++) {
-            double v = plane_get(&b->normal[c], (int)b->points[i].x, (int)b->points[i].y);
-            if (v < -0.01 || v > 1.01) return false;
-            any = any || v > 0.0;
-        }
-    return any;
+    r.score = score(v, &r);
+    if (r.score > best->score && r.score > first + 0.1) *best = r;
 }
 
-// The convention's reading stays unless another fits the surface clearly better: a flat picture fits several.
-void measure_normals(build *b)
+// The header's rotation with its axes in every order and sign, for writers differ in what they call x, y and z of a camera.
+static void try_header(const build *b, const evidence *v, bool unorm, double first, reading *best)
 {
-    if (!b->has_normal || b->point_count == 0) return;
-    const convention *row = b->row;
-    bool unorm = row->normal_encoding == NORMAL_UNORM, coded = may_be_unorm(b);
-    bool world = row->normal_space != SPACE_CAMERA && b->has_pose;
-    reading best = {world ? SPACE_WORLD : SPACE_CAMERA, unorm, -1.0, -1.0, 0.0};
-    best.score = score(b, &best);
-    const double first = best.score;
-    static const double signs[3][2] = {{-1, -1}, {-1, 1}, {1, 1}}; // y up z back; y up z forward; our own axes
-    for (int u = 0; u <= (coded || unorm); u++)
-        for (int k = b->has_pose ? 0 : 1; k < 4; k++) {
-            reading r = {k == 0 ? SPACE_WORLD : SPACE_CAMERA, u == 1, k ? signs[k - 1][0] : -1, k ? signs[k - 1][1] : -1, 0.0};
-            r.score = score(b, &r);
-            if (r.score > best.score && r.score > first + 0.1) best = r;
+    static const int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+    const mat3 both[2] = {m3_transpose(b->pose.axes), b->pose.axes};
+    for (int inverse = 0; inverse < 2; inverse++)
+        for (int k = 0; k < 48; k++) {
+            mat3 s = {{{0}}};
+            for (int row = 0; row < 3; row++) s.m[row][orders[k / 8][row]] = k >> row & 1 ? -1.0 : 1.0;
+            reading r = {m3_mul(s, both[inverse]), unorm, "world", true, inverse == 1, 0.0};
+            try_reading(v, r, first, best);
         }
-    apply(b, &best);
+}
+
+static reading choose_reading(const build *b, const evidence *v)
+{
+    const convention *row = b->row;
+    const char *own = b->g->position_is_camera_space ? "camera" : "world";
+    const reading list[5] = {
+        {.to_camera = m3_transpose(b->g->camera.world_from_camera), .name = own},
+        {.to_camera = m3_transpose(m3_mul(b->pose.axes, b->pose.from_ours)), .name = "world", .from_header = true},
+        {.to_camera = signs(1, -1, -1), .name = "camera"}, // y up, z back
+        {.to_camera = signs(1, -1, 1), .name = "camera"},  // y up, z forward
+        {.to_camera = signs(1, 1, 1), .name = "camera"},   // our own axes
+    };
+    const bool there[5] = {b->has_rotation, b->has_header_pose, true, true, true};
+    bool known = row->normal_space != SPACE_CAMERA;
+    reading best = list[known && there[0] ? 0 : known && there[1] ? 1 : 2];
+    best.unorm = row->normal_encoding == NORMAL_UNORM && v->may_be_unorm;
+    best.score = score(v, &best);
+    const double first = best.score;
+    for (int u = 0; u <= v->may_be_unorm; u++) {
+        for (int i = 0; i < 5; i++) {
+            reading r = list[i];
+            r.unorm = u == 1;
+            if (there[i]) try_reading(v, r, first, &best);
+        }
+        if (b->has_header_pose && best.score < 0.9) try_header(b, v, u == 1, first, &best);
+    }
+    return best;
+}
+
+// Where neither positions nor options know the camera's place in the world, the header does: as the normals confirm it, else as
+// it is.
+static void take_pose(build *b, const reading *r)
+{
+    if (!b->has_header_pose) return;
+    b->world_from_camera = r->from_header ? m3_transpose(r->to_camera) : m3_mul(b->pose.axes, b->pose.from_ours);
+    b->eye = r->from_header && r->inverse ? b->pose.inverse_eye : b->pose.eye;
+    build_note(b, "the camera's place in the world is the header's%s",
+               r->from_header ? ", and the normals agree" : ", unchecked");
+}
+
+bool measure_normals(build *b)
+{
+    bool done = true;
+    reading best = {.name = "camera"};
+    evidence *v = NULL;
+    if (!b->has_normal || b->point_count == 0) goto out;
+    v = mem_zero(1, sizeof *v, b->e);
+    done = v != NULL;
+    if (!done) goto out;
+    gather(b, v);
+    best = choose_reading(b, v);
+    b->normal_to_camera = best.to_camera, b->normal_unorm = best.unorm;
     if (best.score < 0.4) {
         log_warn(b->log, "normals-unrelated",
                  "the normals do not belong to the surface in any reading (mean cosine %.2f); they are rebuilt from depth",
                  best.score);
         b->has_normal = false;
-        return;
+        best.from_header = false;
+        goto out;
     }
-    build_note(b, "normals: %s space%s, mean cosine with the surface %.3f", best.space == SPACE_WORLD ? "world" : "camera",
-               best.unorm ? ", stored as 0..1" : "", best.score);
+    build_note(b, "normals: %s space%s, mean cosine with the surface %.3f", best.name, best.unorm ? ", stored as 0..1" : "",
+               best.score);
+out:
+    if (done) take_pose(b, &best);
+    free(v);
+    return done;
 }

@@ -21,11 +21,7 @@ bool normals_read(const build *b, int x, int y, vec3 *n)
     if (!b->has_normal) return false;
     vec3 v = stored(b, x, y);
     if (b->normal_unorm) v = v3(2.0 * v.x - 1.0, 2.0 * v.y - 1.0, 2.0 * v.z - 1.0);
-    if (b->normal_space == SPACE_WORLD)
-        v = build_rotate(&b->g->camera, v);
-    else
-        v.y *= b->normal_sign_y, v.z *= b->normal_sign_z;
-    *n = v3_normalize(v);
+    *n = v3_normalize(m3_apply(b->normal_to_camera, v));
     return v3_dot(*n, *n) > 0.5;
 }
 

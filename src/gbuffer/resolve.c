@@ -57,12 +57,38 @@ static int role_score(const search *s, const convention *row, role r)
     return best;
 }
 
-static bool has_mark(const exr_file *file, const convention *row)
+// "name", "beginning*" or "name=beginning of its text" (conventions.h).
+static bool mark_stands(const exr_file *file, int part, const char *mark)
+{
+    size_t n = strlen(mark);
+    const char *equals = strchr(mark, '='), *text;
+    char name[64];
+    if (n > 0 && mark[n - 1] == '*') return exr_attr_begins(file, part, mark, n - 1);
+    if (!equals) return exr_attr_exists(file, part, mark);
+    snprintf(name, sizeof name, "%.*s", (int)(equals - mark), mark);
+    return exr_attr_string(file, part, name, &text) && strncasecmp(text, equals + 1, strlen(equals + 1)) == 0;
+}
+
+// The mark that the header shows, or NULL.
+static const char *find_mark(const exr_file *file, const convention *row)
 {
     for (int m = 0; file->core && m < CONVENTION_MARKS && row->marks[m]; m++)
         for (int p = 0; p < file->part_count; p++)
-            if (exr_attr_exists(file, p, row->marks[m])) return true;
-    return false;
+            if (mark_stands(file, p, row->marks[m])) return row->marks[m];
+    return NULL;
+}
+
+// The geometry has to be under the row's own names; for the rest the plain row's stand in.
+static int row_score(const search *s, const convention *row)
+{
+    int score = 0, geometry = 0;
+    for (int r = 0; r < ROLE_COUNT; r++) {
+        bool shape = r == ROLE_POSITION || r == ROLE_NORMAL || r == ROLE_DEPTH;
+        int own = role_score(s, row, (role)r), common = shape ? 0 : role_score(s, s->plain, (role)r);
+        score += own > common ? own : common;
+        geometry += shape ? own : 0;
+    }
+    return geometry > 0 && find_mark(s->file, row) ? score + 1000 : score;
 }
 
 static void choose_row(search *s)
@@ -70,13 +96,9 @@ static void choose_row(search *s)
     s->row = s->plain = &conventions[convention_count - 1];
     int best = -1;
     for (int i = convention_count - 1; i >= 0; i--) {
-        const convention *row = &conventions[i];
-        int geometry = role_score(s, row, ROLE_POSITION) + role_score(s, row, ROLE_DEPTH), score = geometry;
-        for (int r = 0; r < ROLE_COUNT; r++)
-            if (r != ROLE_POSITION && r != ROLE_DEPTH) score += role_score(s, row, (role)r);
-        if (geometry > 0 && has_mark(s->file, row)) score += 1000;
+        int score = row_score(s, &conventions[i]);
         bool earlier_wins = s->row != s->plain && score == best;
-        if (score > best || earlier_wins) best = score, s->row = row;
+        if (score > best || earlier_wins) best = score, s->row = &conventions[i];
     }
 }
 
@@ -293,6 +315,7 @@ bool resolve_channels(const exr_file *file, const resolve_options *options, reso
         goto out;
     }
     out->convention = s.row->name;
+    out->mark = find_mark(file, s.row);
     snprintf(out->view_layer, sizeof out->view_layer, "%s", s.key);
     out->main_part = out->channels[has_position ? ROLE_POSITION : ROLE_DEPTH][0].part;
     out->depth = options->depth;

@@ -44,6 +44,7 @@ typedef struct resolution {
     channel_ref channels[ROLE_COUNT][4]; // components in order X Y Z / R G B
     int components[ROLE_COUNT];          // 0 = absent
     const char *convention;              // table row's name: "blender", "plain", ...
+    const char *mark;                    // what in the header named it; NULL when the channel names did
     char view_layer[128];
     int main_part;           // the part that position/depth live in; its windows are the frame's
     depth_kind depth;        // DEPTH_AUTO until measured against P
