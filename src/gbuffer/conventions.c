@@ -170,9 +170,9 @@ const convention conventions[] = {
         .marks = {"3delight*", "Software=3Delight"},
         .patterns =
             {
-                [ROLE_POSITION] = {"P", "P.world", "P.camera", "builtin.P.world", "builtin.P.camera"},
-                [ROLE_NORMAL] = {"N", "N.world", "N.camera", "builtin.N.world", "builtin.N.camera"},
-                [ROLE_DEPTH] = {"Z", "/Z", "builtin.z"},
+                [ROLE_POSITION] = {"P", "P.world", "P.camera"},
+                [ROLE_NORMAL] = {"N", "N.world", "N.camera"},
+                [ROLE_DEPTH] = {"Z", "/Z", "builtin/Z"},
                 [ROLE_ALBEDO] = {"albedo", "shader.albedo", "relighting_multiplier"},
                 [ROLE_BEAUTY] = {"Ci", "/"},
                 [ROLE_ALPHA] = {"Ci/A", "/A"},
