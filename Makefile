@@ -41,6 +41,7 @@ BIN      := $(BUILD)/ssdo-filter
 PLUGIN   := $(BUILD)/ssdo-images.so $(BUILD)/ssdo-colour.so
 UNIT     := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))
 TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
+HARD     := $(patsubst tests/hard/%.c,$(BUILD)/tests/%,$(wildcard tests/hard/hard_*.c))
 
 .SECONDARY: # keep test objects
 .PHONY: all deps deps-check deps-bench demo check lint format clean install uninstall help
@@ -85,6 +86,10 @@ $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(TESTLIB) $(BUILD)/libssdo.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(PKG_LIBS)
 
+$(BUILD)/tests/hard_%: $(BUILD)/tests/hard/hard_%.o $(BUILD)/tests/hard/hard.o $(TESTLIB) $(BUILD)/libssdo.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(PKG_LIBS)
+
 # Order-only: checks once per make run that the packages of the build are there.
 .PHONY: deps-stamp
 deps-stamp: ; @sh tests/deps.sh --quiet $(DEPS_BUILD)
@@ -98,10 +103,15 @@ demo: deps
 
 check: deps-check
 	@$(MAKE) $(JOBS) --no-print-directory all lint unit
-	@sh tests/run.sh $(BUILD) $(UNIT)
+	@sh tests/run.sh $(BUILD) $(UNIT) $(HARD)
 
-.PHONY: unit
-unit: $(UNIT)
+# The hard cases, all of them (tests/hard): `make check` runs a subset.
+.PHONY: unit hard check-hard
+check-hard: deps-check
+	@$(MAKE) $(JOBS) --no-print-directory all hard
+	@SSDO_HARD=whole sh tests/run.sh $(BUILD) $(HARD)
+hard: $(HARD)
+unit: $(UNIT) $(HARD)
 
 # Error against time of every method (tests/bench/bench.h): a table, a plot, all figures as CSV, in $(BUILD)/bench.
 BENCH     := bench cache embree generated plot references rows run scenes summary table yardstick

@@ -13,6 +13,7 @@ struct Side {
     float cos_n, sin_n;
     float below;  // -F(n - pi/2)
     float scale;  // 1 / (cos n + n sin n)
+    float least;  // height below which it is the rounding of the points' coordinates
     vec2 eye;     // where the eye is, or for an orthographic camera its direction
 };
 
@@ -40,6 +41,7 @@ Side side_of(vec3 V, vec3 outwards, vec3 N, float eye_distance, out float n, out
     s.lift = N * inverse_length;
     s.below = 0.5 * (s.cos_n + (n - 0.5 * PI) * s.sin_n);
     s.scale = 1.0 / (s.cos_n + n * s.sin_n);
+    s.least = 8.0 * ULP * eye_distance * inverse_length;
     s.eye = vec2(-s.sin_n, s.cos_n) * (is_orthographic() ? 1.0 : eye_distance);
     return s;
 }
@@ -59,7 +61,7 @@ float share(Side s, vec2 w) {
     float ct = clamp((w.y * s.cos_n - w.x * s.sin_n) * l, -1.0, 1.0), st = max((w.y * s.sin_n + w.x * s.cos_n) * l, 0.0);
     float t = fast_acos(ct);
     float c = (0.5 * (s.cos_n * st * st + s.sin_n * (t - st * ct)) + s.below) * s.scale;
-    return w.y * l <= GRAZING ? 1.0 : clamp(c, 0.0, 1.0);
+    return w.y <= max(GRAZING / l, s.least) ? 1.0 : clamp(c, 0.0, 1.0);
 }
 
 vec2 in_slice(Side s, vec3 w) { return vec2(dot(w, s.tangent), dot(w, s.lift)); }

@@ -88,6 +88,9 @@ typedef struct gpu_tiles {
 
 enum { GPU_GROUP = 8, GPU_TILE = 64 }; // a work group is GPU_GROUP^2 pixels
 
+// GPU_TILE, or for tests what the environment variable SSDO_TILE says (1 .. 65536 pixels).
+int gpu_tile_size(void);
+
 // A tile is occupied if any of its pixels has mask[i] != 0 or (coverage given) coverage[i] > 0.
 bool gpu_tiles_make(gpu_tiles *t, int width, int height, int size, const float *mask, const float *coverage, error *e);
 void gpu_tiles_free(gpu_tiles *t);

@@ -93,6 +93,13 @@ void gpu_uniforms_free(GLuint buffer)
     if (buffer) glDeleteBuffers(1, &buffer);
 }
 
+int gpu_tile_size(void)
+{
+    const char *s = getenv("SSDO_TILE");
+    int size = s ? atoi(s) : 0;
+    return size > 0 && size <= 65536 ? size : GPU_TILE;
+}
+
 static bool any_surface(const gpu_tiles *t, int column, int row, const float *mask, const float *coverage)
 {
     int x1 = (column + 1) * t->size, y1 = (row + 1) * t->size;

@@ -89,7 +89,8 @@ bool pass_begin(pass_context *c, gpu *g, const gbuffer *gb, const environment *e
     *c = (pass_context){
         .g = g, .log = log, .timing = timing, .width = gb->width, .height = gb->height, .set = *set, .gb = gb, .env = env};
     double wall = now(CLOCK_MONOTONIC), cpu = now(CLOCK_PROCESS_CPUTIME_ID);
-    bool ok = upload_all(c, gb, e) && gpu_tiles_make(&c->tiles, c->width, c->height, GPU_TILE, gb->depth, gb->coverage, e) &&
+    bool ok = upload_all(c, gb, e) &&
+              gpu_tiles_make(&c->tiles, c->width, c->height, gpu_tile_size(), gb->depth, gb->coverage, e) &&
               gpu_finish(g, "the upload", e);
     if (!ok) {
         pass_end(c);

@@ -30,14 +30,15 @@ static vec3 normal_of(const gbuffer *gb, size_t i)
     return v3((double)n[0], (double)n[1], (double)n[2]);
 }
 
-// About SAMPLES surfaces on a square grid.
+// SAMPLES surfaces or up to twice as many, on a square grid over the whole frame.
 static void take_samples(const gbuffer *gb, finder *f)
 {
     double room = DISTANCE * (gb->camera.kind == CAMERA_ORTHOGRAPHIC ? gb->extent : 0.0);
     int step = (int)sqrt((double)gb->width * gb->height / SAMPLES);
     if (step < 1) step = 1;
+    while ((gb->width / step + 1) * (gb->height / step + 1) > 2 * SAMPLES) step++;
     for (int y = step / 2; y < gb->height; y += step)
-        for (int x = step / 2; x < gb->width && f->count < 2 * SAMPLES; x += step) {
+        for (int x = step / 2; x < gb->width; x += step) {
             size_t i = (size_t)y * (size_t)gb->width + (size_t)x;
             if (gb->depth[i] <= 0.0f) continue;
             double z = (double)gb->depth[i];
