@@ -39,6 +39,7 @@ typedef struct options {
     bool from_sh;
     int blur; // radius in pixels; 0 none; -1 the method's default
     double scale, contrast;
+    bool half; // --resolution: estimated at half the size
 
     const char *bounce; // none, arc, ssdo; NULL = the method's own where it has one
     double bounce_strength;

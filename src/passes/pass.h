@@ -43,6 +43,7 @@ typedef struct pass_settings {
     mat3 world_from_camera; // to the world that the environment is fixed to
     int seed;
     bool planes; // let large planes stand in for what the camera does not see
+    bool half;   // method and bounce run on a frame of half the size
     double amount;
     double depthmask_strength; // 0: the composite is left alone
     bool multiply_all;         // occlusion is multiplied onto everything, not onto diffuse light only
@@ -126,6 +127,10 @@ bool pass_ssdo(pass_context *c, error *e);        // -> occlusion, radiance, vis
 bool pass_vpl(pass_context *c, error *e);         // radiance or beauty, albedo -> indirect
 bool pass_ssdo_bounce(pass_context *c, error *e); // radiance or beauty, albedo -> indirect
 bool pass_blur(pass_context *c, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e); // in place; NULL = none
+// What the method and the bounce made of a frame of half the size (gbuffer/half.h), brought to the size of `c`: its occlusion,
+// visibility, radiance and sh, as far as `small` has them; one more layer of four components.
+bool pass_upsample(pass_context *c, const pass_context *small, error *e);
+bool pass_upsample_colour(pass_context *c, const pass_context *small, const gpu_image *from, gpu_image *to, error *e);
 bool pass_look(pass_context *c, gpu_image *scalar, error *e); // scale and contrast, in place
 bool pass_irradiance(pass_context *c, error *e);              // occlusion -> radiance
 bool pass_edges(pass_context *c, error *e);                   // fills the layers of partly covered pixels

@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include "base/mem.h"
+#include "gbuffer/half.h"
 
 // The bounce that --bounce names, else the method's own.
 static bool (*bounce_of(const plan *p))(pass_context *, error *)
@@ -15,16 +16,63 @@ static bool (*bounce_of(const plan *p))(pass_context *, error *)
     return name && strcmp(name, "arc") == 0 ? pass_arc_bounce : pass_ssdo_bounce;
 }
 
-static bool run_passes(pass_context *c, const plan *p, error *e)
+// What the method itself makes, filtered: linear quantities all.
+static bool run_method(pass_context *c, const plan *p, error *e)
 {
-    if (!p->method->run(c, e)) return false;
-    if (p->blur && !pass_blur(c, &c->occlusion, &c->visibility, &c->radiance, e)) return false;
+    return p->method->run(c, e) && (!p->blur || pass_blur(c, &c->occlusion, &c->visibility, &c->radiance, e));
+}
+
+static bool finish_light(pass_context *c, const plan *p, error *e)
+{
     if (p->look && !pass_look(c, &c->occlusion, e)) return false;
     if (p->look && c->visibility.id && !pass_look(c, &c->visibility, e)) return false;
-    if (p->irradiance && !pass_irradiance(c, e)) return false;
-    if (p->bounce && !bounce_of(p)(c, e)) return false;
+    return !p->irradiance || pass_irradiance(c, e);
+}
+
+static bool run_bounce(pass_context *c, const plan *p, error *e)
+{
+    if (!p->bounce) return true;
+    if (!bounce_of(p)(c, e)) return false;
     // The virtual lights are the same for all pixels: no noise. A method that filters itself does not filter the bounce.
-    if (p->bounce && c->set.blur > 0 && bounce_of(p) != pass_vpl && !pass_blur(c, NULL, NULL, &c->indirect, e)) return false;
+    return c->set.blur == 0 || bounce_of(p) == pass_vpl || pass_blur(c, NULL, NULL, &c->indirect, e);
+}
+
+// The times of the small frame's passes belong to the frame.
+static void take_times(pass_context *c, const pass_context *small)
+{
+    for (int i = 0; i < small->timing_count && c->timing_count < PASS_MAX_TIMINGS; i++)
+        c->timings[c->timing_count++] = small->timings[i];
+    c->planes = small->planes;
+}
+
+static bool run_half(pass_context *c, const plan *p, error *e)
+{
+    gbuffer gb;
+    pass_context small;
+    if (!gbuffer_halve(c->gb, c->threads, &gb, e)) return false;
+    pass_settings set = c->set;
+    set.blur = (set.blur + 1) / 2; // as wide on the surface as at full size
+    bool ok = pass_begin(&small, c->g, &gb, c->env, &set, c->timing, c->log, e);
+    if (!ok) goto out;
+    small.environment = c->environment;
+    small.sunless = c->sunless;
+    small.threads = c->threads;
+    small.want_radiance = c->want_radiance;
+    small.want_visibility = c->want_visibility;
+    ok = run_method(&small, p, e) && pass_upsample(c, &small, e);
+    if (ok && p->bounce)
+        ok = finish_light(&small, p, e) && run_bounce(&small, p, e) &&
+             pass_upsample_colour(c, &small, &small.indirect, &c->indirect, e);
+    take_times(c, &small);
+    pass_end(&small);
+out:
+    gbuffer_free(&gb);
+    return ok && finish_light(c, p, e);
+}
+
+static bool run_passes(pass_context *c, const plan *p, error *e)
+{
+    if (c->set.half ? !run_half(c, p, e) : !(run_method(c, p, e) && finish_light(c, p, e) && run_bounce(c, p, e))) return false;
     if (p->edges && c->coverage.id && !pass_edges(c, e)) return false;
     if (p->specular && !pass_specular(c, e)) return false;
     if (p->depthmask && !pass_depthmask(c, e)) return false;

@@ -191,6 +191,7 @@ static pass_settings settings_of(const job *j, const frame_result *r)
         .thickness = share * radius,
         .thickness_fixed = o->thickness >= 0.0,
         .planes = !o->no_planes,
+        .half = o->half && !r->plan.from_sh, // stored layers are whole already
         .samples = o->samples > 0 ? o->samples : samples_at(m, o->quality),
         .angle_bias = o->angle_bias,
         .sh_sigma = o->sh_sigma,

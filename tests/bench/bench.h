@@ -58,6 +58,7 @@ typedef struct bench_row {
     double thickness;       // share of the radius; < 0 as the method's row has it
     double scale, contrast; // 1
     bool no_planes;
+    bool half;     // --resolution half
     bool standard; // the method's own defaults: a row of the short table
 } bench_row;
 

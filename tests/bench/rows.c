@@ -54,6 +54,9 @@ static int method_rows(const method *m, bench_row *rows)
     if (!listed) rows[n++] = row_of(m, "", m->samples, 0);
     for (int i = 0; m->blur > 0 && i < 2; i++)
         rows[n++] = row_of(m, "", i ? m->samples * 4 : m->samples / 4, m->blur); // --quality
+    rows[n] = row_of(m, ", half resolution", m->samples, m->blur);
+    rows[n].half = rows[n].standard = true;
+    n++;
     for (size_t v = 0; v < sizeof variants / sizeof *variants; v++) {
         if (strcmp(variants[v].method, m->name) != 0) continue;
         for (int i = 1; i <= BUDGETS; i += 2) {

@@ -16,6 +16,7 @@ pass_settings bench_settings(const bench_row *row, const bench_scene *b)
     set.samples = row->samples;
     set.blur = row->blur;
     set.planes = !row->no_planes;
+    set.half = row->half;
     set.scale = row->scale;
     set.contrast = row->contrast;
     return set;
