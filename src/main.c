@@ -8,6 +8,7 @@
 #include "base/outfile.h"
 #include "cli/options.h"
 #include "pipeline/batch.h"
+#include "pipeline/explain.h"
 #include "pipeline/frame.h"
 #include "pipeline/preview.h"
 #include "pipeline/report.h"
@@ -94,6 +95,7 @@ int main(int argc, char **argv)
         return 0;
     }
     if (o.list_devices) return list_devices();
+    if (o.explain) return explain_write(&o, stdout, &e) ? 0 : fail(&o, &e);
     log_t log;
     log_init(&log, o.quiet ? LOG_QUIET : o.verbose ? LOG_INFO : LOG_WARN);
     bool ok = run(&o, &log, &e);

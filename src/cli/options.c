@@ -321,7 +321,7 @@ static bool check_together(const options *o, error *e)
     if (o->help || o->version || o->list_devices) return true;
     if (o->input_count == 0)
         return err_set(e, ERR_USAGE, NULL, NULL, "no input file; usage: ssdo-filter [options] INPUT... -o OUTPUT, " SEE_HELP);
-    if (!o->output) return err_set(e, ERR_USAGE, NULL, NULL, "no output file; name it with -o FILE, " SEE_HELP);
+    if (!o->output && !o->explain) return err_set(e, ERR_USAGE, NULL, NULL, "no output file; name it with -o FILE, " SEE_HELP);
     if (o->fov > 0 && o->ortho > 0)
         return err_set(e, ERR_USAGE, NULL, NULL, "--fov and --ortho exclude each other; give the one the camera has");
     if (o->verbose && o->quiet) return err_set(e, ERR_USAGE, NULL, NULL, "-v and -q exclude each other; give one");

@@ -78,6 +78,7 @@ typedef struct options {
     int device; // -1 = first usable
     bool list_devices;
     int threads; // 0 = default
+    bool explain;
     bool verbose, quiet, help, version;
 } options;
 

@@ -186,6 +186,8 @@ const option_row option_rows[] = {
      .help = "List the EGL devices and exit."},
     {.group = GROUP_RUN, .name = "threads", .argument = "N", .kind = OPT_INT, .offset = FIELD(threads), .min = 1, .max = 1024,
      .fallback = "the CPUs this process may use", .help = "Threads for reading, writing and preparing. The result does not depend on it."},
+    {.group = GROUP_RUN, .name = "explain", .kind = OPT_FLAG, .offset = FIELD(explain),
+     .help = "Print which renderer's conventions the input follows, which channel is taken for what and on what evidence, and what would run; filter and write nothing. Of a sequence, the first frame is explained."},
     {.group = GROUP_RUN, .name = "verbose", .letter = 'v', .kind = OPT_FLAG, .offset = FIELD(verbose),
      .help = "Say what was concluded from the input and what ran."},
     {.group = GROUP_RUN, .name = "quiet", .letter = 'q', .kind = OPT_FLAG, .offset = FIELD(quiet),

@@ -105,7 +105,7 @@ bool gbuffer_build(const exr_file *file, const resolution *r, const gbuffer_opti
     *out = (gbuffer){0};
     build b = {.file = file, .r = r, .options = options, .g = out, .log = log, .e = e, .row = convention_named(r->convention)};
     bool done = open_frame(&b) && validity_classify(&b) && validity_sample(&b) && choose_camera(&b) && positions_raw(&b) &&
-                measure_normals(&b);
+                measure_normals(&b) && damage_warn(&b);
     if (done) {
         positions_final(&b);
         normals_make(&b);

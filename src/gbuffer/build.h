@@ -111,6 +111,9 @@ bool choose_camera(build *b);
 bool measure_depth(build *b);
 bool measure_normals(build *b);
 
+// damage.c: warns of filtered or lossily compressed geometry. Before positions_final.
+bool damage_warn(build *b);
+
 // positions.c: planar depth of every pixel.
 bool positions_raw(build *b);
 void positions_final(build *b);

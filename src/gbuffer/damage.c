@@ -1,0 +1,169 @@
+// Warnings about geometry that was stored so that it no longer is the surface's: filtered, or compressed as a colour.
+#include <OpenEXR/openexr_attr.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/mem.h"
+#include "gbuffer/build.h"
+
+enum { LOOKED_AT_ROWS = 256, LEAST_EDGES = 30 };
+static const double most_between = 0.3; // share of the edges that may have a value in between: thin things do
+static const double worst_length = 0.002;
+
+// Edges that a row of pixels crosses, and how many of them have a pixel that is neither side's.
+typedef struct edges {
+    size_t all, between;
+} edges;
+
+static bool filtered(const edges *e) { return e->all >= LEAST_EDGES && (double)e->between > most_between * (double)e->all; }
+
+// Depths of a row, 0 where there is no surface. An edge: two pixels on each side that agree among themselves and differ from the
+// other side; the pixel between belongs to one side if it was sampled at a point.
+static void count_depth(const double *z, int n, edges *out)
+{
+    for (int x = 2; x < n - 2; x++) {
+        double a = z[x - 1], c = z[x + 1], step = fabs(a - c);
+        if (!(a > 0.0 && c > 0.0 && z[x] > 0.0 && z[x - 2] > 0.0 && z[x + 2] > 0.0)) continue;
+        if (step < 0.1 * fmin(a, c) || fabs(a - z[x - 2]) > 0.1 * step || fabs(c - z[x + 2]) > 0.1 * step) continue;
+        double share = (z[x] - a) / (c - a);
+        out->all++;
+        out->between += share > 0.1 && share < 0.9;
+    }
+}
+
+// The mean of two unit normals is shorter than they are.
+static void count_normals(const vec3 *n, int count, edges *out)
+{
+    for (int x = 1; x < count - 1; x++) {
+        double a = v3_length(n[x - 1]), b = v3_length(n[x]), c = v3_length(n[x + 1]);
+        if (!(a > 0.99 && c > 0.99 && b > 0.0) || v3_dot(n[x - 1], n[x + 1]) > 0.8) continue;
+        out->all++;
+        out->between += b < 0.98;
+    }
+}
+
+typedef struct look {
+    edges position, normal, depth;
+    double *z[2];
+    vec3 *n;
+} look;
+
+static vec3 stored_normal(const build *b, int x, int y)
+{
+    vec3 n = v3(plane_get(&b->normal[0], x, y), plane_get(&b->normal[1], x, y), plane_get(&b->normal[2], x, y));
+    if (b->normal_unorm) n = v3(2.0 * n.x - 1.0, 2.0 * n.y - 1.0, 2.0 * n.z - 1.0);
+    return v3_finite(n) ? n : v3(0, 0, 0);
+}
+
+static void look_at_row(const build *b, int y, look *l)
+{
+    int w = b->g->width;
+    for (int x = 0; x < w; x++) {
+        bool there = b->raw[build_index(b, x, y)] > 0.0f;
+        l->z[0][x] = there && b->has_position ? camera_from_world(&b->g->camera, build_position(b, x, y)).z : 0.0;
+        l->z[1][x] = there && b->has_depth ? plane_get(&b->depth, x, y) : 0.0;
+        l->n[x] = there && b->has_normal ? stored_normal(b, x, y) : v3(0, 0, 0);
+    }
+    count_depth(l->z[0], w, &l->position);
+    count_depth(l->z[1], w, &l->depth);
+    count_normals(l->n, w, &l->normal);
+}
+
+// "arnold/aovs/P/filter" when it is no closest filter, else "".
+static const char *header_filter(const build *b, role r)
+{
+    channel_ref ref = b->r->channels[r][0];
+    if (b->r->components[r] == 0 || !b->file->core) return "";
+    const char *channel = b->file->parts[ref.part].channels[ref.channel].name, *value;
+    char name[300];
+    snprintf(name, sizeof name, "arnold/aovs/%.*s/filter", (int)strcspn(channel, "."), channel);
+    return exr_attr_string(b->file, ref.part, name, &value) && !strstr(value, "closest") ? value : "";
+}
+
+static void warn_filtered(build *b, role r, const edges *e)
+{
+    const char *header = header_filter(b, r);
+    bool seen = filtered(e);
+    if (!seen && !header[0]) return;
+    char key[32], evidence[128] = "";
+    snprintf(key, sizeof key, "filtered-%s", role_name(r));
+    if (seen)
+        snprintf(evidence, sizeof evidence, "%.0f %% of the edges have a value in between",
+                 100.0 * (double)e->between / (double)e->all);
+    log_warn(b->log, key,
+             "the %s pass is anti-aliased (%s%s%s): edges hold surfaces that are not there; render it with a closest filter",
+             role_name(r), evidence,
+             seen && header[0] ? "; the header says "
+             : header[0]       ? "the header says "
+                               : "",
+             header);
+}
+
+// DWA stores channels of these names as colours, with loss, and all others as they are.
+static bool lossy_name(const char *channel)
+{
+    static const char *const names[] = {"r", "g", "b", "y", "by", "ry", "red", "green", "blue"};
+    const char *dot = strrchr(channel, '.'), *last = dot ? dot + 1 : channel;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcasecmp(last, names[i]) == 0) return true;
+    return false;
+}
+
+// Share of the sampled pixels whose normal is no unit vector, or whose position is not on its pixel.
+static double damaged_share(const build *b, role r)
+{
+    size_t bad = 0;
+    for (size_t i = 0; i < b->point_count; i++) {
+        const camera_point *p = &b->points[i];
+        double x, y;
+        if (r == ROLE_NORMAL)
+            bad += fabs(v3_length(stored_normal(b, (int)p->x, (int)p->y)) - 1.0) > worst_length;
+        else
+            bad += !camera_project(&b->g->camera, camera_from_world(&b->g->camera, p->world), &x, &y) ||
+                   hypot(x - p->x, y - p->y) > 0.1;
+    }
+    return b->point_count ? (double)bad / (double)b->point_count : 0.0;
+}
+
+static void warn_dwa(build *b, role r)
+{
+    char list[300] = "", key[32];
+    size_t used = 0;
+    for (int k = 0; k < b->r->components[r]; k++) {
+        channel_ref ref = b->r->channels[r][k];
+        const exr_part *part = &b->file->parts[ref.part];
+        const char *name = part->channels[ref.channel].name;
+        bool dwa = part->compression == EXR_COMPRESSION_DWAA || part->compression == EXR_COMPRESSION_DWAB;
+        if (dwa && lossy_name(name) && used + strlen(name) + 3 < sizeof list)
+            used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", name);
+    }
+    if (!used) return;
+    snprintf(key, sizeof key, "dwa-%s", role_name(r));
+    char measured[64] = "";
+    if (r != ROLE_DEPTH && (r != ROLE_POSITION || b->has_pose))
+        snprintf(measured, sizeof measured, "; %.0f %% of the pixels show it", 100.0 * damaged_share(b, r));
+    log_warn(b->log, key, "%s: DWA compression took the %s pass for a colour and stored it with loss%s; use ZIP or PIZ for data",
+             list, role_name(r), measured);
+}
+
+bool damage_warn(build *b)
+{
+    size_t w = (size_t)b->g->width;
+    look l = {.z = {mem_pixels(w, sizeof(double), b->e), mem_pixels(w, sizeof(double), b->e)},
+              .n = mem_pixels(w, sizeof(vec3), b->e)};
+    bool ok = l.z[0] && l.z[1] && l.n;
+    int stride = b->g->height / LOOKED_AT_ROWS + 1;
+    for (int y = 0; ok && y < b->g->height; y += stride) look_at_row(b, y, &l);
+    if (ok) {
+        warn_filtered(b, ROLE_POSITION, &l.position);
+        warn_filtered(b, ROLE_DEPTH, &l.depth);
+        if (!b->row->normals_averaged) warn_filtered(b, ROLE_NORMAL, &l.normal);
+        for (int r = ROLE_POSITION; r <= ROLE_DEPTH; r++) warn_dwa(b, (role)r);
+    }
+    free(l.z[0]);
+    free(l.z[1]);
+    free(l.n);
+    return ok;
+}

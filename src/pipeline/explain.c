@@ -1,0 +1,105 @@
+#include "pipeline/explain.h"
+
+#include <string.h>
+
+#include "base/threads.h"
+#include "cli/frames.h"
+#include "gbuffer/conventions.h"
+#include "gbuffer/radius.h"
+#include "pipeline/batch.h"
+#include "pipeline/frame.h"
+
+enum { PATH = 4096 };
+
+static void heading(FILE *to, const char *text) { fprintf(to, "\n%s\n", text); }
+
+static void explain_renderer(const frame_result *r, FILE *to)
+{
+    const convention *row = convention_named(r->resolution.convention);
+    fprintf(to, "convention  %s%s, recognised by %s%s\n", row->name, row->confirmed ? "" : " (unverified)",
+            r->resolution.mark ? "the header's " : "channel names", r->resolution.mark ? r->resolution.mark : "");
+    if (!row->confirmed)
+        fprintf(to, "            unverified: written from documentation, no file of this renderer has confirmed it\n");
+    if (r->resolution.view_layer[0]) fprintf(to, "view layer  %s\n", r->resolution.view_layer);
+    const exr_part *part = &r->file->parts[r->resolution.main_part];
+    fprintf(to, "windows     data %d x %d at (%d, %d), display %d x %d\n", box2_width(part->data_window),
+            box2_height(part->data_window), part->data_window.x0, part->data_window.y0, box2_width(part->display_window),
+            box2_height(part->display_window));
+}
+
+static void explain_roles(const frame_result *r, FILE *to)
+{
+    heading(to, "channels");
+    for (int i = 0; i < ROLE_COUNT; i++) {
+        char line[512];
+        resolve_describe(r->file, &r->resolution, (role)i, line, sizeof line);
+        fprintf(to, "  %s\n", line);
+    }
+    fprintf(to, "  the albedo counts as %s (--albedo-kind)\n",
+            r->resolution.albedo == ALBEDO_DIFFUSE ? "diffuse: free of metal" : "a base colour");
+}
+
+static void explain_evidence(const frame_result *r, FILE *to)
+{
+    heading(to, "evidence");
+    for (int i = 0; i < r->gb.evidence_count; i++) fprintf(to, "  %s\n", r->gb.evidence[i]);
+    fprintf(to, "  surfaces: %zu of %zu pixels\n", r->gb.valid, (size_t)r->gb.width * (size_t)r->gb.height);
+    fprintf(to, "  automatic radius: %g scene units\n", gbuffer_auto_radius(&r->gb));
+    fprintf(to, "  world directions: %s\n",
+            r->gb.camera.has_world ? "known" : "unknown (--env needs --env-frame camera or --camera)");
+}
+
+static void explain_plan(const frame_result *r, FILE *to)
+{
+    heading(to, "what would run");
+    for (int i = 0; i < r->plan.step_count; i++)
+        fprintf(to, "  %-12s %s: %s\n", r->plan.steps[i].pass, r->plan.steps[i].runs ? "yes" : "no", r->plan.steps[i].why);
+    fprintf(to, "  layers:");
+    for (int l = 0; l < LAYER_COUNT; l++)
+        if (r->plan.layers & 1u << l) fprintf(to, " %s", layer_table[l].name);
+    fprintf(to, "\n");
+}
+
+static bool input_of(const options *o, const char *pattern, char *path, error *e)
+{
+    frame_list frames = {0};
+    bool ok = false;
+    if (!pattern_is(pattern)) {
+        snprintf(path, PATH, "%s", pattern);
+        return true;
+    }
+    if (!(o->frames ? frames_parse(o->frames, &frames, e) : pattern_scan(pattern, &frames, e))) return false;
+    if (frames.count == 0)
+        err_set(e, ERR_INPUT, pattern, NULL, "no file fits this pattern");
+    else
+        ok = pattern_path(pattern, frames.frames[0], path, PATH) || err_set(e, ERR_USAGE, pattern, NULL, "the path is too long");
+    frames_free(&frames);
+    return ok;
+}
+
+bool explain_write(const options *o, FILE *to, error *e)
+{
+    char path[PATH];
+    options only_what_is_needed = *o;
+    log_t log; // prints nothing: its warnings are part of the explanation
+    frame_result r = {0};
+    only_what_is_needed.keep_none = true;
+    if (!input_of(o, o->inputs[0], path, e)) return false;
+    log_init(&log, LOG_QUIET);
+    job j = {.o = &only_what_is_needed, .log = &log, .threads = o->threads > 0 ? o->threads : threads_default()};
+    bool ok = frame_read(&j, path, &r, e);
+    fprintf(to, "%s\n", path);
+    if (r.file && r.resolution.convention) {
+        explain_renderer(&r, to);
+        explain_roles(&r, to);
+    }
+    if (ok) {
+        explain_evidence(&r, to);
+        explain_plan(&r, to);
+    }
+    if (log.warning_count) heading(to, "warnings");
+    for (int i = 0; i < log.warning_count; i++) fprintf(to, "  %s\n", log.warnings[i]);
+    frame_free(&r);
+    log_free(&log);
+    return ok;
+}
