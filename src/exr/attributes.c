@@ -7,6 +7,7 @@
 static const exr_attribute_t *find(const exr_file *file, int part, const char *name)
 {
     const exr_attribute_t *a = NULL;
+    file = exr_part_file(file, &part);
     if (exr_get_attribute_by_name(file->core, part, name, &a) != EXR_ERR_SUCCESS) return NULL;
     return a;
 }
@@ -16,6 +17,7 @@ bool exr_attr_exists(const exr_file *file, int part, const char *name) { return 
 bool exr_attr_begins(const exr_file *file, int part, const char *beginning, size_t n)
 {
     int32_t count = 0;
+    file = exr_part_file(file, &part);
     if (exr_get_attribute_count(file->core, part, &count) != EXR_ERR_SUCCESS) return false;
     for (int32_t i = 0; i < count; i++) {
         const exr_attribute_t *a = NULL;

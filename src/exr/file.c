@@ -204,10 +204,15 @@ fail:
 void exr_file_close(exr_file *file)
 {
     if (!file) return;
+    if (file->members) {
+        exr_merged_close(file);
+        return;
+    }
     for (int i = 0; i < file->part_count; i++) {
         exr_part *p = &file->parts[i];
         for (int c = 0; p->channels && c < p->channel_count; c++) {
             free(p->channels[c].name);
+            free(p->channels[c].stored);
             free(p->channels[c].data);
         }
         free(p->channels);

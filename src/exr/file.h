@@ -29,6 +29,7 @@ static inline bool box2_equal(box2 a, box2 b) { return a.x0 == b.x0 && a.y0 == b
 
 typedef struct exr_channel {
     char *name;
+    char *stored; // its name in the file, where exr_file_open_all gave it another; else NULL
     sample_type type;
     bool wanted; // set before exr_file_load: read this channel's pixels
     void *data;  // width * height samples of `type`, native byte order; NULL until loaded
@@ -50,11 +51,23 @@ typedef struct exr_file {
     char *path;
     exr_part *parts;
     int part_count;
-    void *core; // OpenEXRCore's context, open until exr_file_close; attributes are read and copied from it
+    void *core;                // OpenEXRCore's context, open until exr_file_close; attributes are read and copied from it
+    struct exr_file **members; // the files that exr_file_open_all put together; NULL for a file of its own
+    int member_count;
 } exr_file;
 
 // Opens and checks the headers of all parts; reads no pixels. On failure *out is NULL and e names the file.
 bool exr_file_open(const char *path, exr_file **out, error *e);
+
+// Several files of one frame (one pass per file) as one, with the parts of all; one file is opened as it is. A channel without a
+// layer in a single-part file (R, X, Z) is put under the pass the file is for, which is what tells its name from the others',
+// without the frame number: R of shot_P.0001.exr beside shot_N.0001.exr becomes P.R. The picture itself (beauty, rgba, or no word
+// of its own) keeps its names. ERR_INPUT names the file whose display window or pixel aspect differs from the first's (data
+// windows may), and a channel that two files hold.
+bool exr_file_open_all(const char *const *paths, int count, exr_file **out, error *e);
+
+// The file that a part comes from: `file` itself unless it was put together. *part becomes its number there.
+const exr_file *exr_part_file(const exr_file *file, int *part);
 
 // Reads the pixels of every channel with `wanted` set and no data yet, on `threads` threads. A truncated or damaged chunk is
 // ERR_INPUT. A file that lost its end fails whole: no half-read data is left behind as if it were good.

@@ -45,6 +45,9 @@ bool core_log_report(core_log *log, exr_result_t code, error_code kind, const ch
 // otherwise. What passes cannot lead the library's parser astray.
 bool exr_check_header(const char *path, error *e);
 
+// The end of what exr_file_open_all made.
+void exr_merged_close(exr_file *file);
+
 // True for attributes that say how pixels are stored: they are the writer's and never copied.
 bool exr_attr_structural(const char *name);
 

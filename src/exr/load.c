@@ -178,7 +178,8 @@ static bool decode_by_module(load_job *j)
     if (!names || !types || !data) goto out;
     for (size_t i = 0; i < n; i++) {
         types[i] = (int)p->channels[i].type;
-        if (p->channels[i].wanted && !p->channels[i].data) names[i] = p->channels[i].name;
+        if (p->channels[i].wanted && !p->channels[i].data)
+            names[i] = p->channels[i].stored ? p->channels[i].stored : p->channels[i].name;
     }
     ok = images_read_exr_native(j->file->path, j->index, p->channel_count, names, types, data, j->error);
     for (size_t i = 0; ok && i < n; i++) {
@@ -212,6 +213,10 @@ bool exr_file_load(exr_file *file, int threads, error *e)
 {
     size_t total = 0, at = 0;
     bool ok = true;
+    if (file->members) { // whose channels are the same as ours
+        for (int i = 0; ok && i < file->member_count; i++) ok = exr_file_load(file->members[i], threads, e);
+        return ok;
+    }
     for (int i = 0; i < file->part_count; i++) total += (size_t)file->parts[i].channel_count;
     bool *fresh = mem_zero(total, sizeof *fresh, e); // channels that this call brings
     if (!fresh) return false;

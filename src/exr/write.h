@@ -36,7 +36,8 @@ typedef struct exr_out_part {
     int channel_count;
     bool verbatim; // copy the chunks of attributes_from's part as they are stored; only if exr_part_is_verbatim says so.
                    // channels: all of that part's, with data NULL
-    const exr_file *attributes_from; // every attribute of this part that is not structural is copied, NULL for none
+    const exr_file
+        *attributes_from; // every attribute of this part that is not structural is copied, NULL for none; exr_part_file
     int attributes_part;
     const exr_out_attr *attributes; // ours; they replace copied ones of the same name
     int attribute_count;

@@ -11,6 +11,7 @@
 #include "base/mem.h"
 #include "cli/frames.h"
 #include "exr/write.h"
+#include "pipeline/inputs.h"
 #include "pipeline/preview.h"
 #include "pipeline/report.h"
 #include "pipeline/resume.h"
@@ -26,7 +27,8 @@ typedef struct slot {
     bool skipped; // nothing to do, by --missing skip or --skip-existing
     const char *why;
     int steps; // of its progress
-    char input[PATH], output[PATH];
+    input_paths inputs;
+    char output[PATH];
     frame_result result;
     error error;
     struct timespec started;
@@ -95,20 +97,17 @@ static void read_slot(batch *b, slot *s, int frame)
     s->error = (error){0};
     s->result = (frame_result){0};
     clock_gettime(CLOCK_MONOTONIC, &s->started);
-    if (!pattern_path(o->inputs[0], frame, s->input, sizeof s->input) ||
-        !pattern_path(o->output, frame, s->output, sizeof s->output)) {
+    if (!inputs_of_frame(o, frame, &s->inputs) || !pattern_path(o->output, frame, s->output, sizeof s->output)) {
         err_set(&s->error, ERR_USAGE, NULL, NULL, "the path of frame %d is too long", frame);
         return;
     }
-    if (o->missing_skip && access(s->input, F_OK) != 0) {
+    if (!frame_check_output(s->inputs.list, s->inputs.count, s->output, &s->error)) return;
+    if (o->missing_skip && !inputs_exist(&s->inputs)) {
         skip(s, "the input is missing");
-    } else if (exr_same_file(s->input, s->output)) {
-        err_set(&s->error, ERR_USAGE, s->output, NULL,
-                "the output is the input file; name another output, so that nothing is lost");
     } else if (o->skip_existing && resume_is_done(b->j, s->output)) {
         skip(s, "already done");
     } else {
-        if (frame_read(b->j, s->input, &s->result, &s->error)) step(b, s);
+        if (frame_read_files(b->j, s->inputs.list, s->inputs.count, &s->result, &s->error)) step(b, s);
     }
 }
 
@@ -232,7 +231,6 @@ static bool list_frames(const options *o, frame_list *out, error *e)
 static bool fix_radius(job *j, error *e)
 {
     frame_list existing = {0};
-    char path[PATH];
     if (j->o->radius_unit != RADIUS_AUTO) return true;
     int frame = j->o->radius_from;
     if (frame == INT_MIN) {
@@ -241,10 +239,11 @@ static bool fix_radius(job *j, error *e)
         frame = existing.frames[0];
         frames_free(&existing);
     }
-    if (!pattern_path(j->o->inputs[0], frame, path, sizeof path) || !frame_measure_radius(j, path, &j->shot_radius, e))
-        return false;
-    log_info(j->log, "radius: %g scene units for the whole sequence, from %s", j->shot_radius, path);
-    return true;
+    input_paths *in = mem_zero(1, sizeof *in, e);
+    bool ok = in && inputs_of_frame(j->o, frame, in) && frame_measure_radius(j, in->list, in->count, &j->shot_radius, e);
+    if (ok) log_info(j->log, "radius: %g scene units for the whole sequence, from %s", j->shot_radius, in->list[0]);
+    free(in);
+    return ok || err_set(e, ERR_USAGE, j->o->inputs[0], NULL, "the path of frame %d is too long", frame);
 }
 
 static bool holds(const frame_list *l, int frame)

@@ -1,15 +1,15 @@
 #include "pipeline/explain.h"
 
-#include <string.h>
+#include <stdlib.h>
 
+#include "base/mem.h"
 #include "base/threads.h"
 #include "cli/frames.h"
 #include "gbuffer/conventions.h"
 #include "gbuffer/radius.h"
 #include "pipeline/batch.h"
 #include "pipeline/frame.h"
-
-enum { PATH = 4096 };
+#include "pipeline/inputs.h"
 
 static void heading(FILE *to, const char *text) { fprintf(to, "\n%s\n", text); }
 
@@ -60,35 +60,29 @@ static void explain_plan(const frame_result *r, FILE *to)
     fprintf(to, "\n");
 }
 
-static bool input_of(const options *o, const char *pattern, char *path, error *e)
+// The frame that is explained: of a sequence, the first.
+static bool first_frame(const options *o, int *frame, error *e)
 {
     frame_list frames = {0};
-    bool ok = false;
-    if (!pattern_is(pattern)) {
-        snprintf(path, PATH, "%s", pattern);
-        return true;
-    }
-    if (!(o->frames ? frames_parse(o->frames, &frames, e) : pattern_scan(pattern, &frames, e))) return false;
-    if (frames.count == 0)
-        err_set(e, ERR_INPUT, pattern, NULL, "no file fits this pattern");
-    else
-        ok = pattern_path(pattern, frames.frames[0], path, PATH) || err_set(e, ERR_USAGE, pattern, NULL, "the path is too long");
+    *frame = 0;
+    if (!batch_is(o)) return true;
+    bool ok = o->frames ? frames_parse(o->frames, &frames, e) : pattern_scan(o->inputs[0], &frames, e);
+    if (ok && frames.count == 0) ok = err_set(e, ERR_INPUT, o->inputs[0], NULL, "no file fits this pattern");
+    if (ok) *frame = frames.frames[0];
     frames_free(&frames);
     return ok;
 }
 
-bool explain_write(const options *o, FILE *to, error *e)
+static bool explain_files(const options *o, const input_paths *in, FILE *to, error *e)
 {
-    char path[PATH];
     options only_what_is_needed = *o;
     log_t log; // prints nothing: its warnings are part of the explanation
     frame_result r = {0};
     only_what_is_needed.keep_none = true;
-    if (!input_of(o, o->inputs[0], path, e)) return false;
     log_init(&log, LOG_QUIET);
     job j = {.o = &only_what_is_needed, .log = &log, .threads = o->threads > 0 ? o->threads : threads_default()};
-    bool ok = frame_read(&j, path, &r, e);
-    fprintf(to, "%s\n", path);
+    bool ok = frame_read_files(&j, in->list, in->count, &r, e);
+    for (int i = 0; i < in->count; i++) fprintf(to, "%s\n", in->list[i]);
     if (r.file && r.resolution.convention) {
         explain_renderer(&r, to);
         explain_roles(&r, to);
@@ -101,5 +95,17 @@ bool explain_write(const options *o, FILE *to, error *e)
     for (int i = 0; i < log.warning_count; i++) fprintf(to, "  %s\n", log.warnings[i]);
     frame_free(&r);
     log_free(&log);
+    return ok;
+}
+
+bool explain_write(const options *o, FILE *to, error *e)
+{
+    int frame;
+    input_paths *in = mem_zero(1, sizeof *in, e);
+    bool ok = in && first_frame(o, &frame, e);
+    if (ok && !inputs_of_frame(o, frame, in))
+        ok = err_set(e, ERR_USAGE, o->inputs[0], NULL, "the path of frame %d is too long", frame);
+    ok = ok && explain_files(o, in, to, e);
+    free(in);
     return ok;
 }

@@ -71,12 +71,14 @@ static void want_channels(const job *j, exr_file *file, const resolution *r, con
         }
 }
 
-bool frame_read(const job *j, const char *input, frame_result *r, error *e)
+bool frame_read(const job *j, const char *input, frame_result *r, error *e) { return frame_read_files(j, &input, 1, r, e); }
+
+bool frame_read_files(const job *j, const char *const *inputs, int count, frame_result *r, error *e)
 {
     *r = (frame_result){0};
     stopwatch t = read_clocks();
     resolve_options ro = resolve_options_of(j->o);
-    if (!exr_file_open(input, &r->file, e) || !resolve_channels(r->file, &ro, &r->resolution, j->log, e) ||
+    if (!exr_file_open_all(inputs, count, &r->file, e) || !resolve_channels(r->file, &ro, &r->resolution, j->log, e) ||
         !plan_make(j->o, r->file, &r->resolution, &r->plan, j->log, e) || !output_check_names(j->o, r->file, &r->plan, e))
         return false;
     want_channels(j, r->file, &r->resolution, &r->plan);
@@ -234,12 +236,24 @@ bool frame_write(const job *j, frame_result *r, const char *output, error *e)
     return true;
 }
 
+bool frame_check_output(const char *const *inputs, int count, const char *output, error *e)
+{
+    for (int i = 0; i < count; i++)
+        if (exr_same_file(inputs[i], output))
+            return err_set(e, ERR_USAGE, output, NULL,
+                           "the output is the input file; name another output, so that nothing is lost");
+    return true;
+}
+
 bool frame_run(job *j, const char *input, const char *output, frame_result *r, error *e)
 {
+    return frame_run_files(j, &input, 1, output, r, e);
+}
+
+bool frame_run_files(job *j, const char *const *inputs, int count, const char *output, frame_result *r, error *e)
+{
     *r = (frame_result){0};
-    if (exr_same_file(input, output))
-        return err_set(e, ERR_USAGE, output, NULL, "the output is the input file; name another output, so that nothing is lost");
-    if (!frame_read(j, input, r, e)) return false;
+    if (!frame_check_output(inputs, count, output, e) || !frame_read_files(j, inputs, count, r, e)) return false;
     progress_step(j->progress);
     if (job_stopped(j) || !frame_filter(j, r, e)) return false;
     progress_step(j->progress);
@@ -249,10 +263,10 @@ bool frame_run(job *j, const char *input, const char *output, frame_result *r, e
     return true;
 }
 
-bool frame_measure_radius(const job *j, const char *input, double *radius, error *e)
+bool frame_measure_radius(const job *j, const char *const *inputs, int count, double *radius, error *e)
 {
     frame_result r;
-    bool ok = frame_read(j, input, &r, e);
+    bool ok = frame_read_files(j, inputs, count, &r, e);
     if (ok) *radius = gbuffer_auto_radius(&r.gb);
     frame_free(&r);
     return ok;

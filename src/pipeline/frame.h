@@ -54,18 +54,24 @@ bool job_open(job *j, const options *o, log_t *log, error *e);
 bool job_stopped(const job *j);
 void job_close(job *j);
 
+// ERR_USAGE if the output is one of the inputs.
+bool frame_check_output(const char *const *inputs, int count, const char *output, error *e);
+
 // The three stages of a frame, to be called in this order on one result; after a failure only frame_free. When the job is stopped
 // before the passes have ended, filtering returns false without an error. Reading and writing may
 // run on other threads than filtering, which belongs to the context's thread; of one job no stage runs twice at a time.
 bool frame_read(const job *j, const char *input, frame_result *result, error *e); // starts by zeroing the result
+// The same for a frame whose passes are in several files.
+bool frame_read_files(const job *j, const char *const *inputs, int count, frame_result *result, error *e);
 bool frame_filter(job *j, frame_result *result, error *e);
 bool frame_write(const job *j, frame_result *result, const char *output, error *e);
 
 // All three.
 bool frame_run(job *j, const char *input, const char *output, frame_result *result, error *e);
+bool frame_run_files(job *j, const char *const *inputs, int count, const char *output, frame_result *result, error *e);
 void frame_free(frame_result *result);
 
 // The automatic radius of one frame, for a sequence that must have the same radius everywhere.
-bool frame_measure_radius(const job *j, const char *input, double *radius, error *e);
+bool frame_measure_radius(const job *j, const char *const *inputs, int count, double *radius, error *e);
 
 #endif

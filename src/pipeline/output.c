@@ -55,7 +55,7 @@ bool output_check_names(const options *o, const exr_file *file, const plan *p, e
 bool output_keeps_chunks(const options *o, const exr_file *file, int part, const plan *p)
 {
     const exr_part *in = &file->parts[part];
-    if (!o->multipart || o->keep_none || o->compression || !exr_part_is_verbatim(in)) return false;
+    if (!o->multipart || o->keep_none || o->compression || !exr_part_is_verbatim(in) || file->members) return false;
     for (int c = 0; c < in->channel_count; c++)
         if (is_ours(o, p, in->channels[c].name)) return false;
     return true;
@@ -180,13 +180,14 @@ static bool can_merge(const exr_file *f)
 static exr_out_part part_like(const options *o, const exr_file *f, int index)
 {
     const exr_part *p = &f->parts[index];
+    const exr_file *from = exr_part_file(f, &index);
     return (exr_out_part){.name = p->name,
                           .view = p->view,
                           .data_window = p->data_window,
                           .display_window = p->display_window,
                           .pixel_aspect = p->pixel_aspect,
                           .compression = compression_of(o, p),
-                          .attributes_from = f,
+                          .attributes_from = from,
                           .attributes_part = index};
 }
 

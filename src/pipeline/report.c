@@ -165,10 +165,13 @@ static json_object *planes_of(const frame_result *r)
 static json_object *report_of(const job *j, const frame_result *r, const char *output)
 {
     json_object *o = json_object_new_object(), *evidence = json_object_new_array(), *layers = json_object_new_array(),
-                *warnings = json_object_new_array();
+                *warnings = json_object_new_array(), *inputs = json_object_new_array();
     double pixels = (double)r->gb.width * r->gb.height;
     put_text(o, "version", SSDO_VERSION);
     put_text(o, "input", r->file->path);
+    for (int i = 0; i < r->file->member_count; i++)
+        json_object_array_add(inputs, json_object_new_string(r->file->members[i]->path));
+    put(o, "inputs", inputs); // where the frame's passes are in several files
     put_text(o, "output", output);
     put_text(o, "device", j->g.renderer);
     put_text(o, "convention", r->resolution.convention);

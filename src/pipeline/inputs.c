@@ -1,0 +1,29 @@
+#include "pipeline/inputs.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/frames.h"
+
+bool inputs_of_frame(const options *o, int frame, input_paths *out)
+{
+    out->count = o->input_count;
+    for (int i = 0; i < o->input_count; i++) {
+        bool fits = strlen(o->inputs[i]) < INPUT_PATH;
+        if (pattern_is(o->inputs[i]))
+            fits = pattern_path(o->inputs[i], frame, out->room[i], INPUT_PATH);
+        else if (fits)
+            snprintf(out->room[i], INPUT_PATH, "%s", o->inputs[i]);
+        if (!fits) return false;
+        out->list[i] = out->room[i];
+    }
+    return true;
+}
+
+bool inputs_exist(const input_paths *in)
+{
+    for (int i = 0; i < in->count; i++)
+        if (access(in->list[i], F_OK) != 0) return false;
+    return true;
+}

@@ -1,0 +1,21 @@
+// The input files of one frame: those of the command line, with the frame's number in their places.
+#ifndef SSDO_PIPELINE_INPUTS_H
+#define SSDO_PIPELINE_INPUTS_H
+
+#include "cli/options.h"
+
+enum { INPUT_PATH = 4096 };
+
+typedef struct input_paths {
+    char room[OPT_MAX_INPUTS][INPUT_PATH];
+    const char *list[OPT_MAX_INPUTS];
+    int count;
+} input_paths;
+
+// A name without a place for the frame is the same file in every frame. False if a path does not fit.
+bool inputs_of_frame(const options *o, int frame, input_paths *out);
+
+// True if none is missing.
+bool inputs_exist(const input_paths *in);
+
+#endif
