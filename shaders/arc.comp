@@ -1,8 +1,9 @@
 #version 450 core
-// lint: HORIZON | BITMASK | RUNS | RUNS PLANES | RUNS PLANES LIGHT | RUNS LIGHT VISIBILITY | RUNS PLANES BOUNCE
+// lint: HORIZON | BITMASK | HORIZON BENT | RUNS | RUNS PLANES BENT | RUNS PLANES | RUNS PLANES LIGHT | RUNS LIGHT VISIBILITY | RUNS PLANES BOUNCE
 // Slices around the view vector, each a set of 64 sectors of equal cosine weight (THEORY.md 2 and 3). With the weight of a slice
 // w = |n_p| (cos n + n sin n), and sums over slices:
 //   occlusion = sum w (open share) / sum w                          so that an empty plane is exactly 1
+//   BENT:   bent = 2/3 N - sum w (blocked directions) / sum w        the cosine-weighted mean open direction: N on an empty plane
 //   LIGHT:  radiance = sum w (open share x environment) / sum w + suns,  visibility = its luminance over that of the open sky
 //   BOUNCE: indirect = sum w (blocked share x what the nearest blocker sends) / sum w
 // The sectors are blocked by HORIZON or BITMASK, the older methods, or by RUNS and PLANES, which are `arc`.
@@ -15,7 +16,7 @@
 #include "include/arc_sectors.glsl"
 
 layout(r32f, binding = 2) writeonly uniform image2D scalar_image; // occlusion, or with LIGHT the visibility
-layout(rgba32f, binding = 3) writeonly uniform image2D light_image; // radiance or indirect
+layout(rgba32f, binding = 3) writeonly uniform image2D light_image; // radiance, indirect or bent
 layout(rgba32f, binding = 4) readonly uniform image2D sender_image; // light before albedo, or a beauty
 layout(rgba32f, binding = 5) readonly uniform image2D albedo_image;
 
@@ -35,9 +36,12 @@ vec3 sent_by(ivec2 q) {
 #ifdef LIGHT
 #include "include/arc_light.glsl"
 #endif
+#ifdef BENT
+#include "include/arc_bent.glsl"
+#endif
 
 void store(ivec2 p, float scalar, vec3 light) {
-#if defined(LIGHT) || defined(BOUNCE)
+#if defined(LIGHT) || defined(BOUNCE) || defined(BENT)
     imageStore(light_image, p, vec4(light, 0.0));
 #endif
 #if defined(VISIBILITY) || !(defined(LIGHT) || defined(BOUNCE))
@@ -65,6 +69,9 @@ void main() {
 #ifdef BOUNCE
     vec3 bounced = vec3(0.0);
 #endif
+#ifdef BENT
+    vec3 shut = vec3(0.0);
+#endif
     for (int i = 0; i < params.slices; i++) {
         float phi = PI * (float(i) + turn.x) / float(params.slices);
         vec2 noise = pixel_hash(uvec2(p) + uvec2(seed + 131u * uint(i + 1), 17u));
@@ -85,6 +92,9 @@ void main() {
 #ifdef BOUNCE
         bounced += weight * slots.light;
 #endif
+#ifdef BENT
+        shut += weight * blocked_moment(side, V, across, n, slots.blocked, noise.y);
+#endif
     }
 #if defined(LIGHT)
     light.open /= all;
@@ -94,6 +104,8 @@ void main() {
     store(p, light.all_luminance > 0.0 ? min(1.0, light.open_luminance / light.all_luminance) : 1.0, light.open);
 #elif defined(BOUNCE)
     store(p, 0.0, params.strength * bounced / all);
+#elif defined(BENT)
+    store(p, open / all, 2.0 / 3.0 * N - shut / all);
 #else
     store(p, open / all, vec3(0.0));
 #endif

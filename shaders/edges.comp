@@ -1,5 +1,5 @@
 #version 450 core
-// lint: VISIBILITY RADIANCE INDIRECT SH | NOTHING
+// lint: VISIBILITY RADIANCE INDIRECT SH BENT | NOTHING
 // Layers of pixels that a surface covers only in part and whose centre missed it (no position): taken from the nearest pixel with a
 // surface, of those equally near the one with the most similar normal (DESIGN.md, Edges).
 #include "include/frame.glsl"
@@ -17,6 +17,9 @@ layout(rgba32f, binding = 5) uniform image2D radiance_image;
 layout(rgba32f, binding = 6) uniform image2D indirect_image;
 #endif
 
+#ifdef BENT
+layout(rgba32f, binding = 10) uniform image2D bent_image;
+#endif
 #ifdef SH
 layout(rgba32f, binding = 7) uniform image2D sh0_image;
 layout(rgba32f, binding = 8) uniform image2D sh1_image;
@@ -52,6 +55,9 @@ void main() {
 #endif
 #ifdef INDIRECT
     imageStore(indirect_image, p, imageLoad(indirect_image, from));
+#endif
+#ifdef BENT
+    imageStore(bent_image, p, imageLoad(bent_image, from));
 #endif
 #ifdef SH
     imageStore(sh0_image, p, imageLoad(sh0_image, from));

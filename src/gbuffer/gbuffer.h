@@ -45,10 +45,12 @@ typedef struct gbuffer {
     bool normals_from_depth, depth_from_position;
     depth_kind depth_kind; // as measured
     bool position_is_camera_space;
-    size_t valid;           // pixels with a surface
-    size_t off_ray;         // pixels whose P lay off their own ray and were moved onto it (DESIGN.md 4)
-    double extent;          // robust size of the visible surfaces, scene units: gbuffer_extent in radius.h
-    char evidence[12][160]; // what was measured, one line each, for -v and the report
+    mat3 normal_from_camera; // to the space of the file's normals; without any to the world, or if that is unknown to camera axes
+                             // with y up and z backwards
+    size_t valid;            // pixels with a surface
+    size_t off_ray;          // pixels whose P lay off their own ray and were moved onto it (DESIGN.md 4)
+    double extent;           // robust size of the visible surfaces, scene units: gbuffer_extent in radius.h
+    char evidence[12][160];  // what was measured, one line each, for -v and the report
     int evidence_count;
 } gbuffer;
 

@@ -104,10 +104,12 @@ static const char *with_planes(const pass_context *c, const char *defines, char 
 static bool run_occlusion(pass_context *c, const char *defines, error *e)
 {
     arc_params params = arc_params_of(c);
-    char buf[128];
+    char with_bent[64], buf[128];
+    snprintf(with_bent, sizeof with_bent, "%s%s", defines, c->want_bent ? "BENT 1\n" : "");
     if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e)) return false;
-    const pass_binding bindings[] = {{2, &c->occlusion, GL_WRITE_ONLY}};
-    return pass_run(c, "arc", with_planes(c, defines, buf, sizeof buf), &params, sizeof params, bindings, 1, false, e);
+    if (c->want_bent && !pass_make(c, &c->bent, GL_RGBA32F, 0.0f, e)) return false;
+    const pass_binding bindings[] = {{2, &c->occlusion, GL_WRITE_ONLY}, {3, &c->bent, GL_WRITE_ONLY}};
+    return pass_run(c, "arc", with_planes(c, with_bent, buf, sizeof buf), &params, sizeof params, bindings, 2, false, e);
 }
 
 // Light comes from any distance, so its march has no radius.

@@ -12,6 +12,7 @@ typedef struct method {
     int samples, blur;     // defaults
     double thickness;      // default, share of the radius
     bool fills_radiance;   // own radiance and visibility; else SH irradiance x occlusion
+    bool fills_bent;       // makes the bent layer
     bool fills_sh;         // makes the sh layers, and filters its samples itself
     const char *bounce;    // its own bounce, NULL for none
     bool (*run)(pass_context *c, error *e);

@@ -68,13 +68,15 @@ typedef struct pass_context {
     bool timing; // measure: waits for the GPU after every pass
     int width, height;
     pass_settings set;
-    bool want_diffuse;                   // the composite pass also writes the diffuse layer
+    bool want_diffuse; // the composite pass also writes the diffuse layer
+    bool want_bent;
     bool want_radiance, want_visibility; // what the method's own loop should make besides occlusion
 
     // Inputs on the GPU; id 0 where the plan does not need them.
     gpu_image depth, normal, albedo, beauty, material, emission, diffuse_direct, coverage, environment;
     // Layers; id 0 until their pass has run.
     gpu_image occlusion, visibility, radiance, indirect, specular, diffuse_share, composite, diffuse, depthmask;
+    gpu_image bent;  // mean open direction of the cosine-weighted hemisphere, camera space: 2/3 long where all is open
     gpu_image sh[3]; // SH vector of cosine-weighted visibility, coefficients 0 1 2 | 3 4 5 | 6 7 8
 
     const float *stored_sh[3]; // --from-sh: 3 a pixel, borrowed; NULL: s3ho measures
@@ -116,10 +118,10 @@ bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, er
 // ---- the passes, one file and one shader each
 // ------------------------------------------------------------------------------------
 bool pass_alchemy(pass_context *c, error *e);     // -> occlusion (1 - S, before its bounds)
-bool pass_arc(pass_context *c, error *e);         // -> occlusion, radiance, indirect
+bool pass_arc(pass_context *c, error *e);         // -> occlusion, bent, radiance
 bool pass_arc_bounce(pass_context *c, error *e);  // radiance or beauty, albedo -> indirect
-bool pass_gtao(pass_context *c, error *e);        // -> occlusion
-bool pass_bitmask(pass_context *c, error *e);     // -> occlusion
+bool pass_gtao(pass_context *c, error *e);        // -> occlusion, bent
+bool pass_bitmask(pass_context *c, error *e);     // -> occlusion, bent
 bool pass_hemisphere(pass_context *c, error *e);  // -> occlusion
 bool pass_hbao(pass_context *c, error *e);        // -> occlusion
 bool pass_s3ho(pass_context *c, error *e);        // -> sh, occlusion, radiance, visibility
@@ -128,7 +130,7 @@ bool pass_vpl(pass_context *c, error *e);         // radiance or beauty, albedo 
 bool pass_ssdo_bounce(pass_context *c, error *e); // radiance or beauty, albedo -> indirect
 bool pass_blur(pass_context *c, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e); // in place; NULL = none
 // What the method and the bounce made of a frame of half the size (gbuffer/half.h), brought to the size of `c`: its occlusion,
-// visibility, radiance and sh, as far as `small` has them; one more layer of four components.
+// visibility, radiance, bent and sh, as far as `small` has them; one more layer of four components.
 bool pass_upsample(pass_context *c, const pass_context *small, error *e);
 bool pass_upsample_colour(pass_context *c, const pass_context *small, const gpu_image *from, gpu_image *to, error *e);
 bool pass_look(pass_context *c, gpu_image *scalar, error *e); // scale and contrast, in place

@@ -19,7 +19,9 @@ static bool (*bounce_of(const plan *p))(pass_context *, error *)
 // What the method itself makes, filtered: linear quantities all.
 static bool run_method(pass_context *c, const plan *p, error *e)
 {
-    return p->method->run(c, e) && (!p->blur || pass_blur(c, &c->occlusion, &c->visibility, &c->radiance, e));
+    if (!p->method->run(c, e)) return false;
+    if (!p->blur) return true;
+    return pass_blur(c, &c->occlusion, &c->visibility, &c->radiance, e) && (!c->bent.id || pass_blur(c, NULL, NULL, &c->bent, e));
 }
 
 static bool finish_light(pass_context *c, const plan *p, error *e)
@@ -59,6 +61,7 @@ static bool run_half(pass_context *c, const plan *p, error *e)
     small.threads = c->threads;
     small.want_radiance = c->want_radiance;
     small.want_visibility = c->want_visibility;
+    small.want_bent = c->want_bent;
     ok = run_method(&small, p, e) && pass_upsample(c, &small, e);
     if (ok && p->bounce)
         ok = finish_light(&small, p, e) && run_bounce(&small, p, e) &&
@@ -91,6 +94,19 @@ static void sanitise(layer_id l, float *v, size_t n)
     }
 }
 
+// Bent normals: unit length, in the space of the file's normals. Where nothing is open the normal stands in.
+static void point_along(const gbuffer *gb, float *v, size_t pixels)
+{
+    for (size_t i = 0; i < pixels; i++) {
+        float *w = v + 3 * i;
+        const float *n = gb->normal + 4 * i;
+        vec3 d = v3((double)w[0], (double)w[1], (double)w[2]);
+        if (v3_length(d) < 1e-4) d = v3((double)n[0], (double)n[1], (double)n[2]);
+        d = v3_normalize(m3_apply(gb->normal_from_camera, d));
+        w[0] = (float)d.x, w[1] = (float)d.y, w[2] = (float)d.z;
+    }
+}
+
 static bool read_back(const gpu_image *image, layer_id l, frame_result *r, error *e)
 {
     size_t pixels = (size_t)r->gb.width * (size_t)r->gb.height, channels = strlen(layer_table[l].channels);
@@ -101,6 +117,7 @@ static bool read_back(const gpu_image *image, layer_id l, frame_result *r, error
     for (size_t i = 0; stored != channels && i < pixels; i++)
         for (size_t k = 0; k < channels; k++) v[i * channels + k] = v[i * stored + k];
     sanitise(l, v, pixels * channels);
+    if (l == LAYER_BENT) point_along(&r->gb, v, pixels);
     r->layers[l] = v;
     return true;
 }
@@ -116,6 +133,7 @@ static bool read_layers(const pass_context *c, frame_result *r, error *e)
         [LAYER_SPECULAR] = &c->specular,
         [LAYER_DIFFUSE] = &c->diffuse,
         [LAYER_DEPTHMASK] = &c->depthmask,
+        [LAYER_BENT] = &c->bent,
         [LAYER_SH_0] = &c->sh[0],
         [LAYER_SH_1] = &c->sh[1],
         [LAYER_SH_2] = &c->sh[2],
@@ -154,6 +172,7 @@ bool filter_frame(job *j, frame_result *r, error *e)
     c.sunless = &j->sunless;
     c.threads = j->threads;
     c.want_radiance = r->plan.want_radiance;
+    c.want_bent = r->plan.want_bent;
     c.want_visibility = r->plan.want_visibility && r->plan.method->fills_radiance;
     for (int k = 0; k < 3; k++) c.stored_sh[k] = r->stored_sh[k];
     c.tiles.stop = j->stop;

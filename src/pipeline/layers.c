@@ -8,8 +8,8 @@ const layer_info layer_table[LAYER_COUNT] = {
     [LAYER_INDIRECT] = {"indirect", "RGB", true},    [LAYER_COMPOSITE] = {"composite", "RGB", true},
     [LAYER_VISIBILITY] = {"visibility", "R", false}, [LAYER_SPECULAR] = {"specular", "RGB", false},
     [LAYER_DIFFUSE] = {"diffuse", "RGB", false},     [LAYER_DEPTHMASK] = {"depthmask", "R", false},
-    [LAYER_SH_0] = {"sh_0", "RGB", false},           [LAYER_SH_1] = {"sh_1", "RGB", false},
-    [LAYER_SH_2] = {"sh_2", "RGB", false},
+    [LAYER_BENT] = {"bent", "XYZ", false},           [LAYER_SH_0] = {"sh_0", "RGB", false},
+    [LAYER_SH_1] = {"sh_1", "RGB", false},           [LAYER_SH_2] = {"sh_2", "RGB", false},
 };
 
 static bool unknown(const char *name, size_t n, error *e)

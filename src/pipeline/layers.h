@@ -15,6 +15,7 @@ typedef enum layer_id {
     LAYER_SPECULAR,
     LAYER_DIFFUSE,
     LAYER_DEPTHMASK,
+    LAYER_BENT,
     LAYER_SH_0, // LAYER_SH_0 + k
     LAYER_SH_1,
     LAYER_SH_2,

@@ -51,6 +51,8 @@ static bool drop_impossible(plan *p, const options *o, const exr_file *file, con
           cannot(p, o, file, LAYER_COMPOSITE, "albedo", no_albedo, log, e) &&
           cannot(p, o, file, LAYER_DIFFUSE, "albedo", no_albedo, log, e)))
         return false;
+    if (!p->method->fills_bent && !cannot(p, o, file, LAYER_BENT, NULL, "only the methods arc, gtao and bitmask make it", log, e))
+        return false;
     for (int l = LAYER_SH_0; l <= LAYER_SH_2; l++)
         if (!p->method->fills_sh && !cannot(p, o, file, (layer_id)l, NULL, "only --method s3ho makes it", log, e)) return false;
     if (!in->roughness &&
@@ -119,6 +121,7 @@ bool plan_make(const options *o, const exr_file *file, const resolution *r, plan
     bool light = asked(p, LAYER_RADIANCE) || (relit && !p->visibility_mode) || (p->bounce && p->relight);
     p->want_radiance = light && p->method->fills_radiance;
     p->want_visibility = asked(p, LAYER_VISIBILITY) || (relit && p->visibility_mode);
+    p->want_bent = asked(p, LAYER_BENT);
     p->irradiance = light && !p->method->fills_radiance;
     p->specular = in.roughness && in.env && (relit || asked(p, LAYER_SPECULAR));
     p->light = light || p->want_visibility || p->specular;

@@ -89,7 +89,10 @@ static void draw_layer(sheet *s, const frame_result *r, layer_id l, int x0, int 
         for (int x = 0; x < r->gb.width; x++) {
             const float *v = r->layers[l] + channels * ((size_t)y * (size_t)r->gb.width + (size_t)x);
             uint8_t c[3];
-            for (size_t k = 0; k < 3; k++) c[k] = share ? (uint8_t)lrintf(255.0f * (v[0] + neutral)) : encode(gain * v[k]);
+            for (size_t k = 0; k < 3; k++)
+                c[k] = share             ? (uint8_t)lrintf(255.0f * (v[0] + neutral))
+                       : l == LAYER_BENT ? (uint8_t)lrintf(127.5f * (v[k] + 1.0f))
+                                         : encode(gain * v[k]);
             put(s, x0 + x, y0 + y, c);
         }
 }

@@ -175,6 +175,7 @@ bool scene_gbuffer(const scene *s, const view *v, gbuffer *out, error *e)
                      .display_window = v->display_window,
                      .pixel_aspect = v->pixel_aspect,
                      .camera = v->camera,
+                     .normal_from_camera = v->camera.world_from_camera,
                      .depth_kind = DEPTH_PLANAR};
     out->depth = mem_zero(n, sizeof(float), e);
     out->normal = mem_zero(n, 4 * sizeof(float), e);
