@@ -17,6 +17,7 @@ DEPS_BUILD := gcc g++ pkg-config libopenexr-dev libopenimageio-dev libopencolori
               libdeflate-dev libjson-c-dev
 DEPS_CHECK := libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender libembree-dev man-db
 DEPS_BENCH := gnuplot-nox
+DEPS_HOSTS := blender openimageio-tools openexr imagemagick libmagickcore-6.q16-6-extra
 DEPS_FARM  := blender slurm-wlm munge parallel python3-yaml
 
 PKGS       := OpenEXR epoxy egl libdeflate json-c
@@ -52,6 +53,7 @@ help:
 	@echo 'make demo     install what is missing, build, filter a sample, make a contact sheet'
 	@echo 'make check    install what is missing, build, run all tests'
 	@echo 'make check-farm    a sequence by Slurm, Open Job Description and GNU parallel against one command'
+	@echo 'make check-hosts   our output in Blender, oiiotool, exrmultipart and ImageMagick'
 	@echo 'make bench    error against time of every method (bench-unseen: on scenes rendered afresh)'
 	@echo 'make bench-frame   cost of a whole frame beside copying its file'
 	@echo 'make all | lint | format | install PREFIX= DESTDIR= | uninstall | clean'
@@ -114,6 +116,7 @@ check-hard: deps-check
 	@SSDO_HARD=whole sh tests/run.sh $(BUILD) $(HARD)
 hard: $(HARD)
 unit: $(UNIT) $(HARD)
+
 # Real schedulers on this machine (tests/farm/check.sh); what it starts, it stops.
 .PHONY: check-farm
 check-farm:
@@ -121,6 +124,12 @@ check-farm:
 	@$(MAKE) $(JOBS) --no-print-directory all
 	@sh tests/farm/check.sh $(BUILD)
 
+# Our output in the programs it is for (tests/hosts/check.sh).
+.PHONY: check-hosts
+check-hosts:
+	@sh tests/deps.sh $(DEPS_BUILD) $(DEPS_HOSTS)
+	@$(MAKE) $(JOBS) --no-print-directory all
+	@sh tests/hosts/check.sh $(BUILD)
 
 # Error against time of every method (tests/bench/bench.h): a table, a plot, all figures as CSV, in $(BUILD)/bench.
 BENCH     := bench cache embree generated plot references rows run scenes summary table yardstick

@@ -65,6 +65,7 @@ typedef struct options {
 
     bool keep_none;
     bool multipart;          // --layout: the input's parts as they are stored, ours in a part of their own
+    bool main_composite;     // --main: R G B are the composite
     const char *prefix;      // "" by default; put before our layer names
     const char *compression; // NULL = as the input
     bool output_float;

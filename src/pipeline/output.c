@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "exr/write.h"
 
-enum { MAX_OURS = LAYER_COUNT * 4 + 1, NAME_SIZE = 96, MAX_ATTRS = 10 };
+enum { MAX_OURS = LAYER_COUNT * 4 + 5, NAME_SIZE = 96, MAX_ATTRS = 10 };
 
 // Everything exr_write borrows.
 typedef struct assembly {
@@ -40,8 +40,15 @@ static bool is_ours(const options *o, const plan *p, const char *channel)
     return p->layers & 1u << LAYER_COMPOSITE && strcmp(name, channel) == 0;
 }
 
+// R, G, B and A, which --main composite replaces.
+static bool is_main(const char *channel) { return channel[0] && !channel[1] && strchr("RGBA", channel[0]); }
+
 bool output_check_names(const options *o, const exr_file *file, const plan *p, error *e)
 {
+    if (o->main_composite && !(p->layers & 1u << LAYER_COMPOSITE))
+        return err_set(
+            e, ERR_INPUT, file->path, NULL,
+            "--main composite needs the composite layer, which is not made here; add it to --layers, or leave out --main");
     for (int i = 0; !o->keep_none && i < file->part_count; i++)
         for (int c = 0; c < file->parts[i].channel_count; c++)
             if (is_ours(o, p, file->parts[i].channels[c].name) && !exr_attr_exists(file, i, "ssdo/version"))
@@ -102,6 +109,19 @@ static bool add_channel(assembly *a, frame_result *r, const float *v, size_t str
     return true;
 }
 
+// The channels of the composite once more, as R, G, B and A.
+static void add_main(assembly *a, const options *o)
+{
+    size_t prefix = o->prefix ? strlen(o->prefix) : 0;
+    for (int i = 0, n = a->our_count; i < n; i++) {
+        const char *name = a->names[i] + prefix;
+        if (strncmp(name, "composite.", 10) != 0) continue;
+        memcpy(a->names[a->our_count], name + 10, strlen(name + 10) + 1);
+        a->ours[a->our_count] = (exr_out_channel){a->names[a->our_count], a->ours[i].type, a->ours[i].data};
+        a->our_count++;
+    }
+}
+
 static bool add_layers(assembly *a, const job *j, frame_result *r, error *e)
 {
     for (int l = 0; l < LAYER_COUNT; l++) {
@@ -154,11 +174,11 @@ static void add_attributes(assembly *a, const job *j, const frame_result *r)
 }
 
 // The input's channels of one part that are passed through, appended to out.
-static int keep_channels(const options *o, const plan *p, const exr_part *part, exr_out_channel *out)
+static int keep_channels(const options *o, const plan *p, const exr_part *part, bool merged, exr_out_channel *out)
 {
     int n = 0;
     for (int c = 0; c < part->channel_count; c++)
-        if (!is_ours(o, p, part->channels[c].name))
+        if (!is_ours(o, p, part->channels[c].name) && !(merged && o->main_composite && is_main(part->channels[c].name)))
             out[n++] = (exr_out_channel){part->channels[c].name, part->channels[c].type, part->channels[c].data};
     return n;
 }
@@ -225,7 +245,7 @@ static bool make_parts(assembly *a, const job *j, frame_result *r, error *e)
         if (f->part_count > 1) only->name = only->view = NULL;
         if (!room(only, total_channels(f) + a->our_count, e)) return false;
         for (int i = 0; !j->o->keep_none && i < f->part_count; i++)
-            only->channel_count += keep_channels(j->o, &r->plan, &f->parts[i], only->channels + only->channel_count);
+            only->channel_count += keep_channels(j->o, &r->plan, &f->parts[i], true, only->channels + only->channel_count);
         append_ours(a, only);
         return true;
     }
@@ -235,7 +255,7 @@ static bool make_parts(assembly *a, const job *j, frame_result *r, error *e)
         *part = part_like(j->o, f, i);
         if (output_keeps_chunks(j->o, f, i, &r->plan)) part->compression = f->parts[i].compression;
         if (!room(part, f->parts[i].channel_count, e)) return false;
-        part->channel_count = keep_channels(j->o, &r->plan, &f->parts[i], part->channels);
+        part->channel_count = keep_channels(j->o, &r->plan, &f->parts[i], false, part->channels);
         part->verbatim = output_keeps_chunks(j->o, f, i, &r->plan);
         if (!part->name[0]) part->name = "input"; // parts of a multi-part file need names
     }
@@ -256,6 +276,7 @@ bool output_write(const job *j, frame_result *r, const char *path, error *e)
 {
     assembly *a = mem_zero(1, sizeof *a, e);
     bool ok = a && add_layers(a, j, r, e);
+    if (ok && j->o->main_composite) add_main(a, j->o);
     if (ok) {
         add_attributes(a, j, r);
         ok = make_parts(a, j, r, e) && exr_write(path, a->parts, a->part_count, j->threads, e);

@@ -14,6 +14,11 @@ exrheader "$dir/out.exr" | grep -q 'ssdo/version' || { echo "exrheader does not 
 names=$(oiiotool --info -v samples/still.exr | sed -n 's/ *channel list: //p' | sed 's/ ([a-z]*)//g; s/ //g')
 oiiotool samples/still.exr --ch "$names" -o "$dir/a.exr" && oiiotool "$dir/out.exr" --ch "$names" -o "$dir/b.exr" || exit 1
 oiiotool --diff "$dir/a.exr" "$dir/b.exr" | grep -q PASS || { echo "oiiotool finds changed channels"; exit 1; }
+# --main composite: the nameless channels are the composite, and nothing else of the input is gone.
+"$SSDO" -q samples/still.exr -o "$dir/main.exr" --main composite || exit 1
+oiiotool "$dir/main.exr" --ch R,G,B,A -o "$dir/a.exr" && oiiotool "$dir/main.exr" --ch composite.R,composite.G,composite.B,composite.A -o "$dir/b.exr" || exit 1
+oiiotool --diff --fail 0 --warn 0 "$dir/a.exr" "$dir/b.exr" >/dev/null || { echo "R, G, B and A are not the composite"; exit 1; }
+"$SSDO" -q "$dir/main.exr" -o "$dir/x.exr" --main composite --layers occlusion 2>&1 | grep -q 'needs the composite layer' || { echo "no error without a composite"; exit 1; }
 cat >"$dir/look.py" <<'P'
 import bpy, sys
 image = bpy.data.images.load(sys.argv[-1])
