@@ -13,9 +13,9 @@ CC       := gcc
 endif
 
 # Debian packages: what the build needs, what `make check` needs on top.
-DEPS_BUILD := gcc g++ pkg-config libopenexr-dev libopenimageio-dev libopencolorio-dev libegl-dev libegl-mesa0 libgl1-mesa-dri libepoxy-dev \
-              libdeflate-dev libjson-c-dev
-DEPS_CHECK := libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender libembree-dev man-db
+DEPS_BUILD := gcc g++ pkg-config libopenexr-dev libopenimageio-dev libopencolorio-dev libembree-dev libegl-dev libegl-mesa0 libgl1-mesa-dri \
+              libepoxy-dev libdeflate-dev libjson-c-dev
+DEPS_CHECK := libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender man-db
 DEPS_BENCH := gnuplot-nox
 DEPS_HOSTS := blender openimageio-tools openexr imagemagick libmagickcore-6.q16-6-extra
 DEPS_FARM  := blender slurm-wlm munge parallel python3-yaml
@@ -40,7 +40,7 @@ OBJ      := $(SRC:%.c=$(BUILD)/%.o) $(BUILD)/shaders.o
 SHADERS  := $(wildcard shaders/*.comp shaders/*.frag shaders/*.vert)
 GLSL     := $(SHADERS) $(wildcard shaders/include/*.glsl)
 BIN      := $(BUILD)/ssdo-filter
-PLUGIN   := $(BUILD)/ssdo-images.so $(BUILD)/ssdo-colour.so
+PLUGIN   := $(BUILD)/ssdo-images.so $(BUILD)/ssdo-colour.so $(BUILD)/ssdo-trace.so
 UNIT     := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))
 TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
 HARD     := $(patsubst tests/hard/%.c,$(BUILD)/tests/%,$(wildcard tests/hard/hard_*.c))
@@ -78,13 +78,14 @@ $(BUILD)/shaders.c: $(GLSL) shaders/embed.sh
 $(BUILD)/shaders.o: $(BUILD)/shaders.c src/gpu/shaders.h
 	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $<
 
-# OpenImageIO and OpenColorIO live in modules of their own, opened on demand: linking OpenImageIO costs every run 290 ms.
-$(BUILD)/ssdo-images.so: LIBRARY := OpenImageIO
-$(BUILD)/ssdo-colour.so: LIBRARY := OpenColorIO
+# OpenImageIO, OpenColorIO and Embree live in modules of their own, opened on demand: linking OpenImageIO costs every run 290 ms.
+$(BUILD)/ssdo-images.so: LIBRARY = $$(pkg-config --cflags --libs OpenImageIO)
+$(BUILD)/ssdo-colour.so: LIBRARY = $$(pkg-config --cflags --libs OpenColorIO)
+$(BUILD)/ssdo-trace.so: LIBRARY = -lembree3 # has no pkg-config file
 $(BUILD)/ssdo-%.so: src/plugin/%_shim.cpp src/plugin/%_abi.h | deps-stamp
 	@mkdir -p $(@D)
 	@echo "  c++  $@"
-	$(Q)$(CXX) $(ALL_CXXFLAGS) -shared -o $@ $< $$(pkg-config --cflags --libs $(LIBRARY)) $(LDFLAGS)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -shared -o $@ $< $(LIBRARY) $(LDFLAGS)
 
 $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(TESTLIB) $(BUILD)/libssdo.a
 	@mkdir -p $(@D)
@@ -181,7 +182,7 @@ install: all
 	install -m 644 man/ssdo-filter.1 $(DESTDIR)$(MANDIR)/ssdo-filter.1
 
 uninstall:
-	rm -f $(DESTDIR)$(BINDIR)/ssdo-filter $(DESTDIR)$(LIBDIR)/ssdo-images.so $(DESTDIR)$(LIBDIR)/ssdo-colour.so $(DESTDIR)$(MANDIR)/ssdo-filter.1
+	rm -f $(DESTDIR)$(BINDIR)/ssdo-filter $(PLUGIN:$(BUILD)/%=$(DESTDIR)$(LIBDIR)/%) $(DESTDIR)$(MANDIR)/ssdo-filter.1
 	-rmdir $(DESTDIR)$(LIBDIR)
 
 clean: ; rm -rf $(BUILD) demo

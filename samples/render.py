@@ -1051,6 +1051,34 @@ def record(out, name, entry):
         f.write("\n")
 
 
+def mean_albedo(material):
+    """Of a Diffuse BSDF; of a pattern, the mean of its two colours."""
+    bsdf = next(n for n in material.node_tree.nodes if n.type == "BSDF_DIFFUSE").inputs["Color"]
+    if not bsdf.is_linked:
+        return tuple(bsdf.default_value)[:3]
+    pattern = bsdf.links[0].from_node
+    return mix(pattern.inputs["Color1"].default_value[:3], pattern.inputs["Color2"].default_value[:3], 0.5)
+
+
+def export_obj(path):
+    """The scene's surfaces for ssdo-filter --mesh: world space, Blender's axes (z up) and unit, polygons as they are, Kd in a .mtl."""
+    graph = bpy.context.evaluated_depsgraph_get()
+    materials, base = {}, 1
+    with open(path, "w") as f:
+        f.write("mtllib %s.mtl\n" % os.path.splitext(os.path.basename(path))[0])
+        for thing in bpy.context.scene.objects:
+            if thing.type != "MESH":
+                continue
+            mesh, matrix = thing.evaluated_get(graph).data, thing.matrix_world
+            material = materials.setdefault(mean_albedo(mesh.materials[0]), "m%d" % len(materials))
+            f.write("usemtl %s\n" % material)
+            f.writelines("v %.9g %.9g %.9g\n" % tuple(matrix @ v.co) for v in mesh.vertices)
+            f.writelines("f %s\n" % " ".join(str(base + i) for i in face.vertices) for face in mesh.polygons)
+            base += len(mesh.vertices)
+    with open(os.path.splitext(path)[0] + ".mtl", "w") as f:
+        f.writelines("newmtl %s\nKd %.9g %.9g %.9g\n" % (name, *colour) for colour, name in materials.items())
+
+
 def make(name, args):
     builder, env, ao_distance, transparent, spp = SCENES[name]
     hot = name == "hot"
@@ -1066,6 +1094,9 @@ def make(name, args):
     world(env_path, rotate, hot, ao_distance)
     layer = settings(args.size, spp, args.seed, transparent, 0 if hot else 1)
     bpy.context.view_layer.update()
+    if args.export_obj:
+        export_obj(os.path.join(args.out, name + ".obj"))
+        return
     main, truth = os.path.join(args.out, name + ".exr"), os.path.join(args.out, name + "_truth.exr")
     if not args.truth_only:
         wanted = {"z", "position", "normal", "diffuse_color", "diffuse_direct"}
@@ -1108,6 +1139,7 @@ def main():
     parser.add_argument("--spp", type=int, default=0, help="samples per pixel; 0: the scene's own")
     parser.add_argument("--size", default=None, help="WIDTHxHEIGHT")
     parser.add_argument("--truth-only", action="store_true")
+    parser.add_argument("--export-obj", action="store_true", help="write the scene's mesh, NAME.obj and NAME.mtl, and render nothing")
     args = parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
     if not args.scene and not args.all:
         parser.error("--scene NAME or --all")

@@ -41,6 +41,10 @@ typedef struct options {
     double scale, contrast;
     bool half; // --resolution: estimated at half the size
 
+    const char *mesh; // of --method raytrace
+    int trace;        // passes/trace.h's backend: 0 auto, 1 embree, 2 gpu
+    int mesh_axes;    // -1 auto, 0 same, 1 y-up, 2 z-up
+
     const char *bounce; // none, arc, ssdo; NULL = the method's own where it has one
     double bounce_strength;
     int vpl_count;

@@ -72,6 +72,21 @@ GLuint gpu_uniforms_make(size_t size);
 void gpu_uniforms_set(GLuint buffer, int binding, const void *data, size_t size);
 void gpu_uniforms_free(GLuint buffer);
 
+// ---- storage buffers
+// ------------------------------------------------------------------------------------------------------------
+typedef struct gpu_buffer {
+    GLuint id; // 0: no buffer
+    size_t size;
+} gpu_buffer;
+
+// `data` may be NULL: undefined contents. `what` names it in messages ("the mesh").
+bool gpu_buffer_make(gpu *g, gpu_buffer *buffer, const void *data, size_t size, const char *what, error *e);
+void gpu_buffer_free(gpu_buffer *buffer);
+void gpu_buffer_write(gpu_buffer *buffer, const void *data, size_t size); // from its beginning
+void gpu_buffer_read(const gpu_buffer *buffer, void *data, size_t size);  // waits for the shaders that write it
+// Binds as shader storage. A buffer with id 0 is skipped.
+void gpu_bind_buffer(int binding, const gpu_buffer *buffer);
+
 // Waits for all work, and turns what GL has to say (errors, lost context, out of memory) into an error.
 bool gpu_finish(gpu *g, const char *what, error *e);
 

@@ -14,6 +14,7 @@ typedef struct method {
     bool fills_radiance;   // own radiance and visibility; else SH irradiance x occlusion
     bool fills_bent;       // makes the bent layer
     bool fills_sh;         // makes the sh layers, and filters its samples itself
+    bool needs_mesh;       // sees the scene's own surfaces: --mesh
     const char *bounce;    // its own bounce, NULL for none
     bool (*run)(pass_context *c, error *e);
 } method;

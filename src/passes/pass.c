@@ -127,6 +127,15 @@ bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, er
     return true;
 }
 
+pass_timing pass_clock(const char *name) { return (pass_timing){name, now(CLOCK_MONOTONIC), now(CLOCK_PROCESS_CPUTIME_ID), 0}; }
+
+void pass_clock_stop(pass_context *c, pass_timing since)
+{
+    if (c->timing_count == PASS_MAX_TIMINGS) return;
+    c->timings[c->timing_count++] = (pass_timing){since.name, now(CLOCK_MONOTONIC) - since.wall_ms,
+                                                  now(CLOCK_PROCESS_CPUTIME_ID) - since.cpu_ms, c->tiles.occupied_count};
+}
+
 bool pass_run(pass_context *c, const char *name, const char *defines, const void *params, size_t params_size,
               const pass_binding *bindings, int binding_count, bool everywhere, error *e)
 {

@@ -45,6 +45,9 @@ typedef struct pass_settings {
     bool planes; // let large planes stand in for what the camera does not see
     bool half;   // method and bounce run on a frame of half the size
     double amount;
+    const char *mesh;          // raytrace: the scene's surfaces, an OBJ file; borrowed
+    int trace;                 // trace_backend of passes/trace.h
+    int mesh_axes;             // < 0 by trial, 0 the world's, 1 y up where the world has z up, 2 the other way round
     double depthmask_strength; // 0: the composite is left alone
     bool multiply_all;         // occlusion is multiplied onto everything, not onto diffuse light only
     bool visibility_mode;
@@ -70,6 +73,7 @@ typedef struct pass_context {
     pass_settings set;
     bool want_diffuse; // the composite pass also writes the diffuse layer
     bool want_bent;
+    bool want_indirect;                  // the method's own loop makes the bounce too
     bool want_radiance, want_visibility; // what the method's own loop should make besides occlusion
 
     // Inputs on the GPU; id 0 where the plan does not need them.
@@ -83,6 +87,7 @@ typedef struct pass_context {
     const environment *env;    // borrowed; NULL without light
     const gbuffer *gb;         // borrowed: for what is found on the CPU
     pass_sunless *sunless;     // borrowed, lives as long as the batch
+    struct trace_scene *trace; // the same; for raytrace
     int threads;
     plane_set planes; // found by the pass that uses them
 
@@ -112,11 +117,17 @@ typedef struct pass_binding {
 bool pass_run(pass_context *c, const char *name, const char *defines, const void *params, size_t params_size,
               const pass_binding *bindings, int binding_count, bool everywhere, error *e);
 
+// Times of a pass that dispatches by itself: pass_clock_stop adds what has passed since to the timings.
+pass_timing pass_clock(const char *name);
+void pass_clock_stop(pass_context *c, pass_timing since);
+
 // Makes an image of the frame's size, cleared to `value` in every component.
 bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, error *e);
 
 // ---- the passes, one file and one shader each
 // ------------------------------------------------------------------------------------
+bool pass_raytrace(pass_context *c, error *e); // -> occlusion, radiance, visibility, indirect
+bool pass_raytrace_bounce(pass_context *c, error *e);
 bool pass_alchemy(pass_context *c, error *e);     // -> occlusion (1 - S, before its bounds)
 bool pass_arc(pass_context *c, error *e);         // -> occlusion, bent, radiance
 bool pass_arc_bounce(pass_context *c, error *e);  // radiance or beauty, albedo -> indirect

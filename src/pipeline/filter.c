@@ -13,6 +13,7 @@ static bool (*bounce_of(const plan *p))(pass_context *, error *)
 {
     const char *name = p->bounce_name ? p->bounce_name : p->method->bounce;
     if (name && strcmp(name, "vpl") == 0) return pass_vpl;
+    if (name && strcmp(name, "raytrace") == 0) return pass_raytrace_bounce;
     return name && strcmp(name, "arc") == 0 ? pass_arc_bounce : pass_ssdo_bounce;
 }
 
@@ -170,6 +171,8 @@ bool filter_frame(job *j, frame_result *r, error *e)
     if (!pass_begin(&c, &j->g, &gb, env, &r->set, j->o->report != NULL, j->log, e)) return false;
     c.environment = j->env_image;
     c.sunless = &j->sunless;
+    c.trace = &j->trace;
+    c.want_indirect = r->plan.bounce && bounce_of(&r->plan) == pass_raytrace_bounce;
     c.threads = j->threads;
     c.want_radiance = r->plan.want_radiance;
     c.want_bent = r->plan.want_bent;

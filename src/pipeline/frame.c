@@ -45,6 +45,7 @@ void job_close(job *j)
 {
     gpu_image_free(&j->env_image);
     gpu_image_free(&j->sunless.map);
+    trace_scene_close(&j->trace);
     if (j->env_loaded) environment_free(&j->env);
     gpu_close(&j->g);
 }
@@ -204,6 +205,9 @@ static pass_settings settings_of(const job *j, const frame_result *r)
         .bounce_strength = o->bounce_strength,
         .vpl_count = o->vpl_count,
         .world_from_camera = world_from_camera(j, r),
+        .mesh = o->mesh,
+        .trace = o->trace,
+        .mesh_axes = o->mesh_axes,
         .amount = o->amount,
         .depthmask_strength = o->depthmask_strength,
         .multiply_all = strcmp(o->multiply, "all") == 0,

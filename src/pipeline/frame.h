@@ -9,6 +9,7 @@
 #include "gpu/gpu.h"
 #include "light/environment.h"
 #include "passes/pass.h"
+#include "passes/trace.h"
 #include "pipeline/plan.h"
 
 // What lives for all frames of a run: options, context, environment.
@@ -21,6 +22,7 @@ typedef struct job {
     environment env;
     gpu_image env_image;
     pass_sunless sunless;
+    trace_scene trace;        // --mesh
     const volatile int *stop; // borrowed, may be NULL: once it is not zero, frames are dropped unless they are being written
     progress *progress;       // borrowed, may be NULL
     double shot_radius;       // automatic radius of the whole sequence; 0: each frame has its own

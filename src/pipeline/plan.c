@@ -35,6 +35,9 @@ static bool cannot(plan *p, const options *o, const exr_file *file, layer_id l, 
     return true;
 }
 
+// The mesh brings its own albedo and light: the picture's is not asked for.
+static bool traces_bounce(const plan *p, const options *o) { return !o->bounce && p->method->needs_mesh; }
+
 static const char *bounce_of(const plan *p, const options *o)
 {
     const char *name = o->bounce ? o->bounce : p->method->bounce;
@@ -47,7 +50,7 @@ static bool drop_impossible(plan *p, const options *o, const exr_file *file, con
     if (!bounce_of(p, o) && !cannot(p, o, file, LAYER_INDIRECT, NULL, no_bounce, log, e)) return false;
     const char *no_albedo = "no albedo channel was found; name it with --albedo";
     if (p->relight && !in->albedo &&
-        !(cannot(p, o, file, LAYER_INDIRECT, "albedo", no_albedo, log, e) &&
+        !((traces_bounce(p, o) || cannot(p, o, file, LAYER_INDIRECT, "albedo", no_albedo, log, e)) &&
           cannot(p, o, file, LAYER_COMPOSITE, "albedo", no_albedo, log, e) &&
           cannot(p, o, file, LAYER_DIFFUSE, "albedo", no_albedo, log, e)))
         return false;
@@ -72,9 +75,10 @@ static void step(plan *p, const char *pass, bool runs, const char *why, const ch
 }
 
 // The bounce goes into a beauty only where it does not already hold one.
-static bool bounce_belongs(const options *o, const inputs *in, bool relight, log_t *log)
+static bool bounce_belongs(const plan *p, const options *o, const inputs *in, log_t *log)
 {
-    if (relight) return true;
+    if (p->relight) return true;
+    if (traces_bounce(p, o)) return false; // it is light of the environment, of which the beauty knows nothing
     if (!in->albedo) return false;
     if (in->diffuse_direct) return !in->diffuse_indirect;
     if (!o->bounce || strcmp(o->bounce, "none") == 0) return false;
@@ -107,6 +111,9 @@ bool plan_make(const options *o, const exr_file *file, const resolution *r, plan
     if (!p->method)
         return err_set(e, ERR_USAGE, NULL, NULL, "--method: there is no method '%s'; the methods are %s", o->method,
                        method_names());
+    if (p->method->needs_mesh && !o->mesh)
+        return err_set(e, ERR_USAGE, NULL, NULL, "--method %s needs the scene's surfaces; name them with --mesh FILE.obj", name);
+    if (o->mesh && !p->method->needs_mesh) log_warn(log, "mesh", "--mesh is not used: only --method raytrace does");
     if (!layers_parse(o->layers, &p->layers, e)) return false;
     inputs in = inputs_of(o, r);
     p->relight = in.env || !in.beauty;
@@ -114,7 +121,7 @@ bool plan_make(const options *o, const exr_file *file, const resolution *r, plan
 
     p->composite = asked(p, LAYER_COMPOSITE) || asked(p, LAYER_DIFFUSE);
     p->visibility_mode = o->mode == MODE_VISIBILITY;
-    p->bounce_in_composite = p->composite && bounce_of(p, o) && bounce_belongs(o, &in, p->relight, log);
+    p->bounce_in_composite = p->composite && bounce_of(p, o) && bounce_belongs(p, o, &in, log);
     p->bounce_name = bounce_of(p, o);
     p->bounce = asked(p, LAYER_INDIRECT) || p->bounce_in_composite;
     bool relit = p->composite && p->relight;
@@ -124,7 +131,7 @@ bool plan_make(const options *o, const exr_file *file, const resolution *r, plan
     p->want_bent = asked(p, LAYER_BENT);
     p->irradiance = light && !p->method->fills_radiance;
     p->specular = in.roughness && in.env && (relit || asked(p, LAYER_SPECULAR));
-    p->light = light || p->want_visibility || p->specular;
+    p->light = light || (p->bounce && traces_bounce(p, o)) || p->want_visibility || p->specular;
     p->blur = (o->blur < 0 ? p->method->blur : o->blur) > 0 && !p->method->fills_sh;
     p->look = o->contrast != 1.0 || o->scale != 1.0 || !p->method->fills_radiance;
     p->edges = true;

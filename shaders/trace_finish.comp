@@ -1,0 +1,35 @@
+#version 450 core
+// lint: LIGHT BOUNCE VISIBILITY | LIGHT | BOUNCE | NOTHING
+// From the sums over all samples to the layers.
+#include "include/frame.glsl"
+#include "include/trace.glsl"
+
+layout(r32f, binding = 4) uniform image2D occlusion_image;
+#ifdef LIGHT
+layout(rgba32f, binding = 5) uniform image2D radiance_image;
+#endif
+#ifdef BOUNCE
+layout(rgba32f, binding = 6) uniform image2D indirect_image;
+#endif
+#ifdef VISIBILITY
+layout(r32f, binding = 7) writeonly uniform image2D visibility_image;
+#endif
+
+void main() {
+    uint i = this_item();
+    if (i >= batch_size()) return;
+    ivec2 p = pixel_of(i);
+    float share = 1.0 / float(params.samples);
+    imageStore(occlusion_image, p, imageLoad(occlusion_image, p) * share);
+#ifdef LIGHT
+    vec4 light = imageLoad(radiance_image, p);
+#ifdef VISIBILITY
+    float lit = dot(light.rgb, vec3(0.2126, 0.7152, 0.0722));
+    imageStore(visibility_image, p, vec4(light.w > 0.0 ? lit / light.w : 1.0));
+#endif
+    imageStore(radiance_image, p, vec4(light.rgb * share, 0.0));
+#endif
+#ifdef BOUNCE
+    imageStore(indirect_image, p, imageLoad(indirect_image, p) * share * params.strength);
+#endif
+}

@@ -1,0 +1,36 @@
+#version 450 core
+// lint: FIND | SETTLE
+// Where the pixels' points lie on the mesh. FIND sends a short ray through each along the line of sight; SETTLE, when it is traced,
+// puts the point onto the surface that was found. Where the mesh is not, the point stays, with the picture's normal.
+#include "include/frame.glsl"
+#include "include/trace.glsl"
+
+layout(std430, binding = 0) buffer Rays { Ray rays[]; };
+layout(std430, binding = 1) readonly buffer Hits { Hit hits[]; };
+layout(r32f, binding = 4) writeonly uniform image2D occlusion_image;
+
+const float NEAR = 2e-3;  // of its depth: as far as the mesh may lie off the point; half floats are 5e-4 wrong
+const float LIFT = 1e-4;  // of its depth: for points that are not on the mesh
+
+void main() {
+    uint i = this_item();
+    if (i >= batch_size()) return;
+    ivec2 p = pixel_of(i);
+    float depth = depth_at(p);
+    vec3 P = position_of(p, depth), away = -view_of(P);
+#ifdef FIND
+    float slack = NEAR * length(P);
+    rays[i] = Ray(vec4(to_mesh(P - slack * away) + mesh_offset(), 2.0 * slack), vec4(to_mesh(away), 0.0));
+#else
+    vec4 point = vec4(to_mesh(P) + mesh_offset(), LIFT * depth), face = vec4(to_mesh(normal_at(p)), 0.0);
+    if (hits[i].triangle < NO_RAY) {
+        Triangle t = triangles[hits[i].triangle];
+        point.xyz = rays[i].origin.xyz + hits[i].t * rays[i].direction.xyz;
+        point.w = lift_of(t, point.xyz);
+        face = vec4(face_of(t, rays[i].direction.xyz), 1.0);
+    }
+    imageStore(point_image, p, point);
+    imageStore(face_image, p, face);
+    imageStore(occlusion_image, p, vec4(0.0)); // where the sum begins
+#endif
+}

@@ -1,0 +1,38 @@
+#version 450 core
+// lint: LIGHT DISTANT | DISTANT | NOTHING
+// A sample's first rays: one by cosine from every point, and with LIGHT one by brightness.
+// Rays i and batch + i belong to pixel i. DISTANT: what lies beyond the radius matters too, and what is hit.
+#include "include/frame.glsl"
+#include "include/sampling.glsl"
+#include "include/environment.glsl"
+#include "include/trace.glsl"
+
+layout(std430, binding = 0) writeonly buffer Rays { Ray rays[]; };
+#ifdef LIGHT
+#include "include/choices.glsl"
+layout(std430, binding = 2) writeonly buffer Gains { vec4 gains[]; };
+#endif
+
+void main() {
+    uint i = this_item();
+    if (i >= batch_size()) return;
+    ivec2 p = pixel_of(i);
+    vec4 at = imageLoad(point_image, p);
+    vec3 face = imageLoad(face_image, p).xyz, N = normal_at(p);
+    vec3 w = tangent_frame(N) * cosine_direction(sequence2() + shift_of(p, 0u).xy);
+#ifdef DISTANT
+    rays[i] = ray_from(at.xyz, face, at.w, to_mesh(w), FAR, false);
+#else
+    rays[i] = ray_from(at.xyz, face, at.w, to_mesh(w), params.radius, true);
+#endif
+#ifdef LIGHT
+    gains[i] = vec4(light_from(to_map(w), dot(N, w)), 0.0);
+    if (!has_choices()) return;
+    vec3 bright = choose_direction(sequence3() + shift_of(p, 1u));
+    w = from_map(bright);
+    uint j = batch_size() + i;
+    vec3 gain = light_from(bright, dot(N, w));
+    rays[j] = ray_from(at.xyz, face, at.w, to_mesh(w), gain == vec3(0.0) ? -1.0 : FAR, true);
+    gains[j] = vec4(gain, 0.0);
+#endif
+}

@@ -1,0 +1,258 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "gbuffer/mesh.h"
+
+typedef struct reader {
+    const char *path;
+    mesh_lines lines;
+    obj_mesh *m;
+    float (*colours)[3]; // of each vertex; red < 0: none
+    size_t vertex_room, triangle_room;
+    unsigned *corners; // of the face being read
+    unsigned (*cut)[3];
+    size_t corner_room;
+    mesh_materials materials;
+    float kd[3]; // of the material in use
+    log_t *log;
+    error *e;
+} reader;
+
+static bool fail(const reader *r, const char *what)
+{
+    return err_set(r->e, ERR_INPUT, r->path, NULL, "line %zu: %s; export the mesh again as a plain OBJ file", r->lines.number,
+                   what);
+}
+
+static bool room_for_vertex(reader *r)
+{
+    if (r->m->vertex_count < r->vertex_room) return true;
+    size_t room = 2 * r->vertex_room + 1024;
+    vec3 *v = mem_grow(r->m->vertices, room, sizeof *v, r->e);
+    if (v) r->m->vertices = v;
+    float(*c)[3] = v ? mem_grow(r->colours, room, sizeof *c, r->e) : NULL;
+    if (c) r->colours = c, r->vertex_room = room;
+    return c != NULL;
+}
+
+static bool room_for_triangles(reader *r, size_t n)
+{
+    if (r->m->triangle_count + n <= r->triangle_room) return true;
+    size_t room = 2 * r->triangle_room + n + 1024;
+    unsigned(*t)[3] = mem_grow(r->m->triangles, room, sizeof *t, r->e);
+    if (t) r->m->triangles = t;
+    float(*a)[3] = t ? mem_grow(r->m->albedo, room, sizeof *a, r->e) : NULL;
+    if (a) r->m->albedo = a, r->triangle_room = room;
+    return a != NULL;
+}
+
+static float share(double v) { return v > 0.0 ? (v < 1.0 ? (float)v : 1.0f) : 0.0f; }
+
+// x y z, then nothing, a weight, a colour, or a weight and a colour.
+static bool read_vertex(reader *r, char *rest)
+{
+    double v[7];
+    int n = 0;
+    while (*rest && n < 7) {
+        char *end;
+        v[n] = strtod(rest, &end);
+        if (end == rest || !isfinite(v[n])) return fail(r, "a vertex holds what is not a finite number");
+        rest = end + strspn(end, " \t");
+        n++;
+    }
+    if (n < 3) return fail(r, "a vertex has fewer than three coordinates");
+    if (r->m->vertex_count == 0xffffffffu) return fail(r, "the mesh has too many vertices");
+    if (!room_for_vertex(r)) return false;
+    float *c = r->colours[r->m->vertex_count];
+    const double *rgb = n >= 6 ? v + n - 3 : NULL;
+    for (int k = 0; k < 3; k++) c[k] = rgb ? share(rgb[k]) : -1.0f;
+    r->m->coloured |= rgb != NULL;
+    r->m->vertices[r->m->vertex_count++] = v3(v[0], v[1], v[2]);
+    return true;
+}
+
+// "7", "7/1", "7//2", "7/1/2", "-1": only the vertex counts.
+static bool read_corner(reader *r, char **at, unsigned *out)
+{
+    char *end;
+    long i = strtol(*at, &end, 10);
+    if (end == *at || (*end && !strchr("/ \t", *end))) return fail(r, "a face holds what is not an index");
+    long count = (long)r->m->vertex_count, index = i > 0 ? i - 1 : count + i;
+    if (i == 0 || index < 0 || index >= count) {
+        char what[120];
+        snprintf(what, sizeof what, "a face names vertex %ld, and there are %ld before it", i, count);
+        return fail(r, what);
+    }
+    *out = (unsigned)index;
+    end += strcspn(end, " \t");
+    *at = end + strspn(end, " \t");
+    return true;
+}
+
+static void colour_of(const reader *r, const unsigned t[3], float out[3])
+{
+    for (int k = 0; k < 3; k++) {
+        float sum = 0.0f;
+        bool all = true;
+        for (int c = 0; c < 3; c++) sum += r->colours[t[c]][k], all &= r->colours[t[c]][0] >= 0.0f;
+        out[k] = all ? sum / 3.0f : r->kd[k];
+    }
+}
+
+static bool has_area(const vec3 *v, const unsigned t[3])
+{
+    vec3 n = v3_cross(v3_sub(v[t[1]], v[t[0]]), v3_sub(v[t[2]], v[t[0]]));
+    return v3_length(n) > 0.0;
+}
+
+static bool room_for_corner(reader *r, size_t n)
+{
+    if (n < r->corner_room) return true;
+    size_t room = 2 * r->corner_room + 16;
+    unsigned *c = mem_grow(r->corners, room, sizeof *c, r->e);
+    if (c) r->corners = c;
+    unsigned(*t)[3] = c ? mem_grow(r->cut, room, sizeof *t, r->e) : NULL;
+    if (t) r->cut = t, r->corner_room = room;
+    return t != NULL;
+}
+
+static bool read_face(reader *r, char *rest)
+{
+    size_t n = 0;
+    for (; *rest; n++)
+        if (!room_for_corner(r, n) || !read_corner(r, &rest, &r->corners[n])) return false;
+    if (n < 3) return fail(r, "a face has fewer than three corners");
+    if (!room_for_triangles(r, n)) return false;
+    obj_mesh *m = r->m;
+    if (m->triangle_count + n > 0x7ffffff0u) return fail(r, "the mesh has too many triangles");
+    mesh_cut_polygon(m->vertices, r->corners, n, r->cut);
+    for (size_t i = 0; i + 2 < n; i++) {
+        if (!has_area(m->vertices, r->cut[i])) continue;
+        colour_of(r, r->cut[i], m->albedo[m->triangle_count]);
+        memcpy(m->triangles[m->triangle_count++], r->cut[i], sizeof r->cut[i]);
+    }
+    return true;
+}
+
+// A material file lies beside the mesh. Missing colours are no reason to stop.
+static bool use_library(reader *r, const char *name)
+{
+    char path[4096];
+    error e = {0};
+    const char *slash = strrchr(r->path, '/');
+    int folder = slash && name[0] != '/' ? (int)(slash - r->path) + 1 : 0;
+    snprintf(path, sizeof path, "%.*s%s", folder, r->path, name);
+    if (mesh_read_mtl(path, &r->materials, &e)) return true;
+    if (e.code == ERR_MEMORY) return err_set(r->e, e.code, NULL, NULL, "%s", e.message);
+    if (r->log) log_warn(r->log, path, "%s: %s; surfaces without a colour reflect %g", path, e.message, (double)MESH_GREY);
+    return true;
+}
+
+static void use_material(reader *r, const char *name)
+{
+    for (int k = 0; k < 3; k++) r->kd[k] = MESH_GREY;
+    for (size_t i = 0; i < r->materials.count; i++)
+        if (strcmp(r->materials.list[i].name, name) == 0) memcpy(r->kd, r->materials.list[i].kd, sizeof r->kd);
+}
+
+static bool read_lines(reader *r)
+{
+    char *line, *rest;
+    bool ok = true;
+    while (ok && (line = mesh_next_line(&r->lines))) {
+        if ((rest = mesh_after_word(line, "v")))
+            ok = read_vertex(r, rest);
+        else if ((rest = mesh_after_word(line, "f")))
+            ok = read_face(r, rest);
+        else if ((rest = mesh_after_word(line, "usemtl")))
+            use_material(r, rest);
+        else if ((rest = mesh_after_word(line, "mtllib")))
+            ok = use_library(r, rest);
+    }
+    if (ok && r->m->triangle_count == 0)
+        ok = err_set(r->e, ERR_INPUT, r->path, NULL, "holds no face with an area; export the scene's surfaces as an OBJ mesh");
+    return ok;
+}
+
+bool mesh_read_obj(const char *path, obj_mesh *out, log_t *log, error *e)
+{
+    reader r = {.path = path, .m = out, .kd = {MESH_GREY, MESH_GREY, MESH_GREY}, .log = log, .e = e};
+    *out = (obj_mesh){0};
+    char *text = mesh_read_text(path, e);
+    r.lines = (mesh_lines){text, 0};
+    bool ok = text && read_lines(&r);
+    out->coloured |= r.materials.count > 0;
+    if (ok && r.materials.textured && log)
+        log_warn(log, "map_Kd", "%s: its materials have textures, which are not read; each surface sends its Kd", path);
+    mesh_materials_free(&r.materials);
+    free(r.colours);
+    free(r.corners);
+    free(r.cut);
+    free(text);
+    if (!ok) mesh_free(out);
+    return ok;
+}
+
+void mesh_free(obj_mesh *m)
+{
+    free(m->vertices);
+    free(m->triangles);
+    free(m->albedo);
+    *m = (obj_mesh){0};
+}
+
+// ---- polygons
+
+typedef struct point2 {
+    double x, y;
+} point2;
+
+static double turn(point2 a, point2 b, point2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
+
+// A corner seen along the axis the polygon faces most, so that its area is positive.
+static point2 flatten(vec3 v, vec3 normal)
+{
+    double ax = fabs(normal.x), ay = fabs(normal.y), az = fabs(normal.z);
+    if (ax >= ay && ax >= az) return normal.x > 0 ? (point2){v.y, v.z} : (point2){v.z, v.y};
+    if (ay >= az) return normal.y > 0 ? (point2){v.z, v.x} : (point2){v.x, v.z};
+    return normal.z > 0 ? (point2){v.x, v.y} : (point2){v.y, v.x};
+}
+
+// Newell: the sum over the edges, good for polygons that are not quite flat.
+static vec3 polygon_normal(const vec3 *v, const unsigned *c, size_t n)
+{
+    vec3 sum = v3(0, 0, 0);
+    for (size_t i = 0; i < n; i++) sum = v3_add(sum, v3_cross(v3_sub(v[c[i]], v[c[0]]), v3_sub(v[c[(i + 1) % n]], v[c[0]])));
+    return sum;
+}
+
+static bool is_ear(const vec3 *v, const unsigned *c, size_t n, size_t i, vec3 normal)
+{
+    size_t before = (i + n - 1) % n, after = (i + 1) % n;
+    point2 a = flatten(v[c[before]], normal), b = flatten(v[c[i]], normal), d = flatten(v[c[after]], normal);
+    if (turn(a, b, d) <= 0.0) return false;
+    for (size_t k = 0; k < n; k++) {
+        point2 p = flatten(v[c[k]], normal);
+        bool corner = c[k] == c[before] || c[k] == c[i] || c[k] == c[after];
+        if (!corner && turn(a, b, p) >= 0.0 && turn(b, d, p) >= 0.0 && turn(d, a, p) >= 0.0) return false;
+    }
+    return true;
+}
+
+void mesh_cut_polygon(const vec3 *v, unsigned *c, size_t n, unsigned (*out)[3])
+{
+    vec3 normal = polygon_normal(v, c, n);
+    for (size_t at = 0; n > 3; n--) {
+        size_t ear = 0;
+        while (ear < n && !is_ear(v, c, n, (at + ear) % n, normal)) ear++;
+        size_t i = (at + (ear < n ? ear : 0)) % n; // no ear: it crosses itself or has no area, so any will do
+        unsigned *t = *out++;
+        t[0] = c[(i + n - 1) % n], t[1] = c[i], t[2] = c[(i + 1) % n];
+        memmove(c + i, c + i + 1, (n - i - 1) * sizeof *c);
+        at = i < n - 1 ? i : 0;
+    }
+    memcpy(*out, c, 3 * sizeof *c);
+}

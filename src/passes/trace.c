@@ -1,0 +1,188 @@
+#include "passes/trace.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/mem.h"
+#include "gbuffer/mesh.h"
+
+enum { FIRST_CHUNK = 1024, LARGEST_CHUNK = 1 << 20 };
+static const double SHORT_MS = 10.0, LONG_MS = 25.0; // a dispatch should take this long: below what any watchdog minds
+
+// ---- opening
+
+static int by_value(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// The median of a few thousand vertices.
+static vec3 middle_of(const obj_mesh *m)
+{
+    enum { MOST = 4096 };
+    double v[3][MOST];
+    size_t stride = m->vertex_count / MOST + 1, n = 0;
+    for (size_t i = 0; i < m->vertex_count && n < MOST; i += stride, n++)
+        v[0][n] = m->vertices[i].x, v[1][n] = m->vertices[i].y, v[2][n] = m->vertices[i].z;
+    for (int k = 0; k < 3; k++) qsort(v[k], n, sizeof **v, by_value);
+    return v3(v[0][n / 2], v[1][n / 2], v[2][n / 2]);
+}
+
+static float *shifted_vertices(const obj_mesh *m, vec3 origin, error *e)
+{
+    float *v = mem_pixels(3 * m->vertex_count, sizeof *v, e);
+    for (size_t i = 0; v && i < m->vertex_count; i++) {
+        vec3 p = v3_sub(m->vertices[i], origin);
+        v[3 * i] = (float)p.x, v[3 * i + 1] = (float)p.y, v[3 * i + 2] = (float)p.z;
+    }
+    return v;
+}
+
+static bool upload_triangles(trace_scene *s, gpu *g, const obj_mesh *m, const float *vertices, error *e)
+{
+    float(*t)[3][4] = mem_pixels(m->triangle_count, sizeof *t, e);
+    if (!t) return false;
+    for (size_t i = 0; i < m->triangle_count; i++) {
+        const float *corner = vertices + 3 * (size_t)m->triangles[i][0];
+        for (size_t c = 0; c < 3; c++) {
+            const float *v = vertices + 3 * (size_t)m->triangles[i][c];
+            for (size_t k = 0; k < 3; k++) t[i][c][k] = c ? v[k] - corner[k] : v[k];
+            t[i][c][3] = m->albedo[i][c];
+        }
+    }
+    bool ok = gpu_buffer_make(g, &s->triangles, t, m->triangle_count * sizeof *t, "the mesh", e);
+    free(t);
+    return ok;
+}
+
+static bool open_grid(trace_scene *s, gpu *g, const float *vertices, const obj_mesh *m, error *e)
+{
+    struct {
+        float low[4], cell[4];
+        int size[4];
+    } block[GRID_LEVELS] = {0};
+    grid made;
+    if (!grid_make(vertices, m->triangles[0], m->triangle_count, &made, e)) return false;
+    for (int l = 0; l < GRID_LEVELS; l++) {
+        const grid_level *level = &made.level[l];
+        memcpy(block[l].low, level->low, sizeof level->low);
+        memcpy(block[l].cell, level->cell, sizeof level->cell);
+        memcpy(block[l].size, level->size, sizeof level->size);
+        block[l].size[3] = (int)level->first;
+    }
+    s->grid_uniforms = gpu_uniforms_make(sizeof block);
+    gpu_uniforms_set(s->grid_uniforms, 1, block, sizeof block);
+    s->chunk = FIRST_CHUNK;
+    bool ok =
+        gpu_buffer_make(g, &s->offsets, made.offsets, (made.offset_count + 1) * sizeof *made.offsets, "the mesh's grid", e) &&
+        gpu_buffer_make(g, &s->items, made.items, (made.item_count + 1) * sizeof *made.items, "the mesh's grid", e);
+    grid_free(&made);
+    return ok;
+}
+
+static bool open_tracer(trace_scene *s, gpu *g, trace_backend backend, const float *vertices, const obj_mesh *m, int threads,
+                        log_t *log, error *e)
+{
+    error missing = {0};
+    if (backend != TRACE_GPU) {
+        if (trace_cpu_open(vertices, m->vertex_count, m->triangles[0], m->triangle_count, threads, &s->cpu, &missing)) {
+            log_info(log, "mesh: %zu triangles, traced by Embree", m->triangle_count);
+            return true;
+        }
+        if (backend == TRACE_EMBREE) return err_set(e, missing.code, NULL, NULL, "%s", missing.message);
+        log_info(log, "%s", missing.message);
+    }
+    log_info(log, "mesh: %zu triangles, traced in a grid on %s", m->triangle_count, g->renderer);
+    return open_grid(s, g, vertices, m, e);
+}
+
+bool trace_scene_open(trace_scene *s, gpu *g, const char *path, trace_backend backend, int threads, log_t *log, error *e)
+{
+    if (s->path && strcmp(s->path, path) == 0) return true;
+    trace_scene_close(s);
+    obj_mesh m;
+    if (!mesh_read_obj(path, &m, log, e)) return false;
+    s->origin = middle_of(&m);
+    s->coloured = m.coloured;
+    s->triangle_count = m.triangle_count;
+    float *vertices = shifted_vertices(&m, s->origin, e);
+    bool ok = vertices && upload_triangles(s, g, &m, vertices, e) && open_tracer(s, g, backend, vertices, &m, threads, log, e) &&
+              (s->path = mem_string(path, e)) != NULL;
+    free(vertices);
+    mesh_free(&m);
+    if (!ok) trace_scene_close(s);
+    return ok;
+}
+
+void trace_scene_close(trace_scene *s)
+{
+    trace_cpu_close(s->cpu);
+    gpu_buffer_free(&s->triangles);
+    gpu_buffer_free(&s->offsets);
+    gpu_buffer_free(&s->items);
+    gpu_buffer_free(&s->choices);
+    gpu_uniforms_free(s->grid_uniforms);
+    free(s->rays);
+    free(s->hits);
+    free(s->path);
+    *s = (trace_scene){0};
+}
+
+// ---- tracing
+
+static bool send_to_embree(trace_scene *s, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e)
+{
+    if (count > s->room) {
+        free(s->rays), free(s->hits);
+        s->room = 0;
+        s->rays = mem_pixels(count, sizeof *s->rays, e);
+        s->hits = mem_pixels(count, sizeof *s->hits, e);
+        if (!s->rays || !s->hits) return false;
+        s->room = count;
+    }
+    gpu_buffer_read(rays, s->rays, count * sizeof *s->rays);
+    trace_cpu_rays(s->cpu, s->rays, s->hits, count);
+    gpu_buffer_write(hits, s->hits, count * sizeof *s->hits);
+    return true;
+}
+
+static double milliseconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+static bool send_to_grid(trace_scene *s, gpu *g, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e)
+{
+    GLuint program = gpu_program(g, "trace_grid.comp", NULL, e);
+    if (!program) return false;
+    glUseProgram(program);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 1, s->grid_uniforms);
+    gpu_bind_buffer(0, rays);
+    gpu_bind_buffer(1, hits);
+    gpu_bind_buffer(3, &s->triangles);
+    gpu_bind_buffer(4, &s->offsets);
+    gpu_bind_buffer(5, &s->items);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    for (size_t first = 0, n; first < count; first += n) {
+        double start = milliseconds();
+        n = count - first < s->chunk ? count - first : s->chunk;
+        glUniform4i(0, (GLint)first, (GLint)(first + n), 0, 0);
+        glDispatchCompute((GLuint)(n + 63) / 64, 1, 1);
+        glFinish();
+        double took = milliseconds() - start;
+        if (took > LONG_MS && s->chunk > 64) s->chunk /= 2;
+        if (took < SHORT_MS && n == s->chunk && s->chunk < LARGEST_CHUNK) s->chunk *= 2;
+    }
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    return true;
+}
+
+bool trace_send(trace_scene *s, gpu *g, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e)
+{
+    return s->cpu ? send_to_embree(s, rays, hits, count, e) : send_to_grid(s, g, rays, hits, count, e);
+}

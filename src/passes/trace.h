@@ -1,0 +1,40 @@
+// The mesh of the ray-traced reference, ready to be traced: by Embree on the CPU, or by a uniform grid on the GPU. Rays and hits
+// live in GPU buffers either way, so that everything else is the same code and both back ends get the same rays.
+#ifndef SSDO_PASSES_TRACE_H
+#define SSDO_PASSES_TRACE_H
+
+#include "base/log.h"
+#include "base/vec.h"
+#include "gpu/gpu.h"
+#include "passes/grid.h"
+#include "plugin/trace.h"
+
+typedef enum trace_backend { TRACE_AUTO, TRACE_EMBREE, TRACE_GPU } trace_backend; // auto: Embree if its module is there
+
+// Kept for the batch; all zero: nothing is open.
+typedef struct trace_scene {
+    char *path;  // of the mesh; owned
+    vec3 origin; // of mesh space, in the file's: near the middle, so that floats are fine where most of the mesh is
+    bool coloured;
+    size_t triangle_count;
+    gpu_buffer triangles; // corner, edge, edge; w: albedo (shaders/include/rays.glsl)
+    trace_cpu *cpu;       // Embree; NULL: the grid
+    gpu_buffer offsets, items;
+    GLuint grid_uniforms;
+    size_t chunk;    // rays of the grid's next dispatch, such that it takes a few ten milliseconds
+    trace_ray *rays; // Embree's copies, owned
+    trace_hit *hits;
+    size_t room;
+    gpu_buffer choices; // the environment's (light/choices.h)
+    int choices_size[2];
+} trace_scene;
+
+// Reads the mesh and builds what traces it, unless that is done. ERR_INPUT for the file, ERR_USAGE when `embree` is asked for and
+// missing.
+bool trace_scene_open(trace_scene *s, gpu *g, const char *path, trace_backend backend, int threads, log_t *log, error *e);
+void trace_scene_close(trace_scene *s);
+
+// Fills hits[0 .. count - 1] with what rays[0 .. count - 1] meet (plugin/trace_abi.h's layouts). Waits for the result.
+bool trace_send(trace_scene *s, gpu *g, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e);
+
+#endif
