@@ -232,11 +232,10 @@ static bool trace_rounds(trace_run *r, error *e)
     for (int done = 0; done < samples;) {
         int end = done + ROUND < samples ? done + ROUND : samples;
         for (size_t first = 0; first < r->pixel_count; first += r->batch)
-            for (int i = done; i < end; i++)
-                if (stopped(r->c))
-                    return true; // the frame will be dropped
-                else if (!trace_sample(r, first, i, e))
-                    return false;
+            for (int i = done; i < end; i++) {
+                if (stopped(r->c)) return true; // the frame will be dropped
+                if (!trace_sample(r, first, i, e)) return false;
+            }
         done = end;
         if (!gpu_finish(r->c->g, "ray tracing", e) || !report_round(r, done, e)) return false;
     }
