@@ -112,28 +112,29 @@ const method methods[] = {
         .bounce = NULL,
         .run = pass_bitmask,
     },
-    {
-        .name = "raytrace",
-        .summary = "the picture's points against the scene's own mesh (--mesh): the truth, up to noise",
-        .weighting = "cosine",
-        .reach = "the mesh within the radius; for light and bounce at any distance",
-        .blind = "what is not in the mesh: textures, smooth normals, emission, transparency",
-        .samples = 64,
-        .blur = 0,
-        .thickness = 0.0,
-        .fills_radiance = true,
-        .needs_mesh = true,
-        .bounce = "raytrace",
-        .run = pass_raytrace,
-    },
     {0},
+};
+
+const method method_raytrace = {
+    .name = "raytrace",
+    .summary = "the picture's points against the scene's own mesh (--mesh): the truth, up to noise",
+    .weighting = "cosine",
+    .reach = "the mesh within the radius; for light and bounce at any distance",
+    .blind = "what is not in the mesh: textures, smooth normals, emission, transparency",
+    .samples = 64,
+    .blur = 0,
+    .thickness = 0.0,
+    .fills_radiance = true,
+    .needs_mesh = true,
+    .bounce = "raytrace",
+    .run = pass_raytrace,
 };
 
 const method *method_find(const char *name)
 {
     for (const method *m = methods; m->name; m++)
         if (strcmp(m->name, name) == 0) return m;
-    return NULL;
+    return strcmp(method_raytrace.name, name) == 0 ? &method_raytrace : NULL;
 }
 
 const char *method_names(void) { return "arc, ssdo, s3ho, alchemy, hemisphere, hbao, gtao, bitmask, raytrace"; }

@@ -19,9 +19,10 @@ typedef struct method {
     bool (*run)(pass_context *c, error *e);
 } method;
 
-extern const method methods[]; // ends with a NULL name
-const method *method_find(const char *name);
-const char *method_names(void); // "arc, ssdo, ..."
-enum { METHOD_DEFAULT = 0 };    // index of the default row
+extern const method methods[];               // that work from the picture alone; ends with a NULL name
+extern const method method_raytrace;         // the reference, which needs the scene's mesh
+const method *method_find(const char *name); // any of them
+const char *method_names(void);              // "arc, ssdo, ..."
+enum { METHOD_DEFAULT = 0 };                 // index of the default row
 
 #endif

@@ -59,6 +59,8 @@ static bool run_half(pass_context *c, const plan *p, error *e)
     if (!ok) goto out;
     small.environment = c->environment;
     small.sunless = c->sunless;
+    small.trace = c->trace;
+    small.want_indirect = c->want_indirect;
     small.threads = c->threads;
     small.want_radiance = c->want_radiance;
     small.want_visibility = c->want_visibility;

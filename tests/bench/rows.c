@@ -76,7 +76,6 @@ int bench_rows(bench_row *rows, int max, double scale, double contrast)
     enum { MOST = 24 }; // of one method
     int n = oracles(rows);
     for (const method *m = methods; m->name && n + 2 * MOST < max; m++) {
-        if (m->needs_mesh) continue;
         n += method_rows(m, rows + n);
         if (strcmp(m->name, "alchemy") != 0) continue;
         for (int i = 0; i < BUDGETS - 1; i++) {

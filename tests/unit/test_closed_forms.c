@@ -26,7 +26,6 @@ typedef enum assumption { VISIBILITY, HORIZON, POINTS, NONE } assumption;
 
 static assumption assumption_of(const method *m)
 {
-    if (m->needs_mesh) return NONE; // test_raytrace
     if (strncmp(m->weighting, "cosine", 6) != 0) return NONE;
     if (strcmp(m->name, "gtao") == 0 || strcmp(m->name, "bitmask") == 0) return HORIZON; // tested with endless thickness
     if (strncmp(m->reach, "points", 6) == 0) return POINTS;

@@ -58,7 +58,7 @@ static gbuffer shoot_corner(scene *s, view *v)
 
 static pass_settings settings(double radius, int samples, int backend)
 {
-    pass_settings set = rig_settings(method_find("raytrace"), radius);
+    pass_settings set = rig_settings(&method_raytrace, radius);
     set.mesh = mesh_path();
     set.mesh_axes = -1;
     set.trace = backend;
@@ -82,7 +82,7 @@ static void corner_is_the_closed_form(void **state)
         write_corner(turned);
         gbuffer gb = shoot_corner(&s, &v);
         pass_settings set = settings(s.radius, 64, backends[run / 2]);
-        must(rig_run(&r, &gb, method_find("raytrace"), &set, ALL, &out, &e), &e);
+        must(rig_run(&r, &gb, &method_raytrace, &set, ALL, &out, &e), &e);
         double worst = 0.0, distance = 0.0, off = 0.0, light = 0.0, bounce = 0.0, n = 0.0;
         for (int i = 0; i < WIDTH * HEIGHT; i++) {
             hit h;
@@ -126,14 +126,14 @@ static void foreign_mesh_is_refused(void **state)
     gb.camera.origin = v3_add(gb.camera.origin, v3(0, 0.3, 0.3)); // neither of its surfaces fits now
     pass_settings set = settings(s.radius, 1, TRACE_EMBREE);
     set.mesh_axes = 0;
-    assert_false(rig_run(&r, &gb, method_find("raytrace"), &set, 1 << LAYER_OCCLUSION, &out, &e));
+    assert_false(rig_run(&r, &gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e));
     assert_int_equal(e.code, ERR_INPUT);
     assert_string_equal(e.file, mesh_path());
     assert_non_null(strstr(e.message, "--mesh-axes"));
     rig_free_result(&out);
     gb.camera.has_world = false;
     e = (error){0};
-    assert_false(rig_run(&r, &gb, method_find("raytrace"), &set, 1 << LAYER_OCCLUSION, &out, &e));
+    assert_false(rig_run(&r, &gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e));
     assert_non_null(strstr(e.message, "--camera"));
     rig_free_result(&out);
     gbuffer_free(&gb);
@@ -157,13 +157,13 @@ static void missing_module_is_named(void **state)
     write_corner(false);
     gbuffer gb = shoot_corner(&s, &v);
     pass_settings set = settings(s.radius, 1, TRACE_EMBREE);
-    assert_false(rig_run(&r, &gb, method_find("raytrace"), &set, 1 << LAYER_OCCLUSION, &out, &e));
+    assert_false(rig_run(&r, &gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e));
     assert_int_equal(e.code, ERR_USAGE);
     assert_non_null(strstr(e.message, "ssdo-trace.so"));
     rig_free_result(&out);
     e = (error){0};
     set.trace = TRACE_AUTO;
-    must(rig_run(&r, &gb, method_find("raytrace"), &set, 1 << LAYER_OCCLUSION, &out, &e), &e);
+    must(rig_run(&r, &gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e), &e);
     assert_null(r.job.trace.cpu);
     rig_free_result(&out);
     gbuffer_free(&gb);
@@ -192,7 +192,7 @@ static void nothing_becomes_nan(void **state)
         }
         pass_settings set = settings(s.radius, 4, backends[b]);
         trace_scene_close(&r.job.trace);
-        must(rig_run(&r, &gb, method_find("raytrace"), &set, ALL, &out, &e), &e);
+        must(rig_run(&r, &gb, &method_raytrace, &set, ALL, &out, &e), &e);
         for (int i = 0; i < WIDTH * HEIGHT; i++) {
             float o = out.layers[LAYER_OCCLUSION][i];
             assert_true(o >= 0.0f && o <= 1.0f);
