@@ -5,6 +5,9 @@ DESTDIR  ?=
 BINDIR   := $(PREFIX)/bin
 LIBDIR   := $(PREFIX)/lib/ssdo-filter
 MANDIR   := $(PREFIX)/share/man/man1
+BASHDIR  := $(PREFIX)/share/bash-completion/completions
+ZSHDIR   := $(PREFIX)/share/zsh/vendor-completions
+DOCDIR   := $(PREFIX)/share/doc/ssdo-filter
 BUILD    ?= build
 JOBS     := $(if $(findstring j,$(MAKEFLAGS)),,-j$(shell nproc)) # of the inner make, when the user gave none
 Q        := $(if $(V),,@)# make V=1 shows the commands
@@ -175,15 +178,27 @@ lint: deps-check
 
 format: ; clang-format -i $$(git ls-files 'src/*.[ch]' 'src/*.cpp' 'tests/*.[ch]')
 
-install: all
-	install -d $(DESTDIR)$(BINDIR) $(DESTDIR)$(LIBDIR) $(DESTDIR)$(MANDIR)
+# Completions come from the option table inside the program; shaders are inside it too.
+$(BUILD)/completion.%: $(BIN)
+	$(Q)$(BIN) --completion $* >$@.tmp && mv $@.tmp $@
+
+# Everything where Debian's policy puts it (below PREFIX). FARM: the templates to start from.
+FARM     := samples/farm/slurm.sh samples/farm/openjd.yaml
+install: all $(BUILD)/completion.bash $(BUILD)/completion.zsh
+	install -d $(addprefix $(DESTDIR),$(BINDIR) $(LIBDIR) $(MANDIR) $(BASHDIR) $(ZSHDIR) $(DOCDIR)/examples)
 	install -m 755 $(BIN) $(DESTDIR)$(BINDIR)/ssdo-filter
 	install -m 644 $(PLUGIN) $(DESTDIR)$(LIBDIR)
 	install -m 644 man/ssdo-filter.1 $(DESTDIR)$(MANDIR)/ssdo-filter.1
+	install -m 644 $(BUILD)/completion.bash $(DESTDIR)$(BASHDIR)/ssdo-filter
+	install -m 644 $(BUILD)/completion.zsh $(DESTDIR)$(ZSHDIR)/_ssdo-filter
+	install -m 644 README.md $(DESTDIR)$(DOCDIR)
+	install -m 644 $(FARM) $(DESTDIR)$(DOCDIR)/examples
 
+# What install put there, and the folders that nobody else uses.
 uninstall:
-	rm -f $(DESTDIR)$(BINDIR)/ssdo-filter $(PLUGIN:$(BUILD)/%=$(DESTDIR)$(LIBDIR)/%) $(DESTDIR)$(MANDIR)/ssdo-filter.1
-	-rmdir $(DESTDIR)$(LIBDIR)
+	rm -f $(addprefix $(DESTDIR),$(BINDIR)/ssdo-filter $(PLUGIN:$(BUILD)/%=$(LIBDIR)/%) $(MANDIR)/ssdo-filter.1 $(BASHDIR)/ssdo-filter \
+	    $(ZSHDIR)/_ssdo-filter $(DOCDIR)/README.md $(FARM:samples/farm/%=$(DOCDIR)/examples/%))
+	-rmdir $(DESTDIR)$(LIBDIR) $(DESTDIR)$(DOCDIR)/examples $(DESTDIR)$(DOCDIR)
 
 clean: ; rm -rf $(BUILD) demo
 

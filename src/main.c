@@ -8,6 +8,7 @@
 #include "base/outfile.h"
 #include "cli/options.h"
 #include "pipeline/batch.h"
+#include "pipeline/complete.h"
 #include "pipeline/explain.h"
 #include "pipeline/frame.h"
 #include "pipeline/preview.h"
@@ -92,6 +93,10 @@ int main(int argc, char **argv)
     }
     if (o.version) {
         puts("ssdo-filter " SSDO_VERSION);
+        return 0;
+    }
+    if (o.completion) {
+        complete_write(stdout, o.completion);
         return 0;
     }
     if (o.list_devices) return list_devices();

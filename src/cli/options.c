@@ -319,7 +319,7 @@ static bool add_input(walk *w)
 // What no single row can know.
 static bool check_together(const options *o, error *e)
 {
-    if (o->help || o->version || o->list_devices) return true;
+    if (o->help || o->version || o->list_devices || o->completion) return true;
     if (o->input_count == 0)
         return err_set(e, ERR_USAGE, NULL, NULL, "no input file; usage: ssdo-filter [options] INPUT... -o OUTPUT, " SEE_HELP);
     if (!o->output && !o->explain) return err_set(e, ERR_USAGE, NULL, NULL, "no output file; name it with -o FILE, " SEE_HELP);

@@ -85,6 +85,7 @@ typedef struct options {
     int threads; // 0 = default
     bool explain;
     bool verbose, quiet, help, version;
+    const char *completion; // print the completion script of this shell
 } options;
 
 void options_defaults(options *o);

@@ -52,7 +52,7 @@ void options_print_help(FILE *to)
     for (int g = 0; g < GROUP_COUNT; g++) {
         fprintf(to, "\n%s\n", option_group_title((option_group)g));
         for (int i = 0; i < option_row_count; i++)
-            if ((int)option_rows[i].group == g) print_help_row(to, &option_rows[i]);
+            if ((int)option_rows[i].group == g && !option_rows[i].hidden) print_help_row(to, &option_rows[i]);
     }
     fprintf(to, "\nExit status: 0 done, 1 some frames failed, 2 usage, 3 input, 4 output, 5 GL or EGL, 6 memory.\n"
                 "The manual: man ssdo-filter\n");
@@ -117,7 +117,7 @@ void options_print_man(FILE *to)
     for (int g = 0; g < GROUP_COUNT; g++) {
         fprintf(to, ".Ss %s\n.Bl -tag -width Ds\n", option_group_title((option_group)g));
         for (int i = 0; i < option_row_count; i++)
-            if ((int)option_rows[i].group == g) print_man_row(to, &option_rows[i]);
+            if ((int)option_rows[i].group == g && !option_rows[i].hidden) print_man_row(to, &option_rows[i]);
         fprintf(to, ".El\n");
     }
 }

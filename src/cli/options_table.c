@@ -204,6 +204,8 @@ const option_row option_rows[] = {
     {.group = GROUP_RUN, .name = "quiet", .letter = 'q', .kind = OPT_FLAG, .offset = FIELD(quiet),
      .help = "Say nothing but errors."},
     {.group = GROUP_RUN, .name = "help", .letter = 'h', .kind = OPT_FLAG, .offset = FIELD(help), .help = "Print this list and exit."},
+    {.group = GROUP_RUN, .name = "completion", .argument = "bash|zsh", .kind = OPT_CHOICE, .offset = FIELD(completion),
+     .words = WORDS({"bash", 0}, {"zsh", 0}), .hidden = true, .help = "Print the shell's completion script and exit."},
     {.group = GROUP_RUN, .name = "version", .kind = OPT_FLAG, .offset = FIELD(version), .help = "Print the version and exit."},
 };
 // clang-format on

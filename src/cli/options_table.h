@@ -52,6 +52,7 @@ typedef struct option_row {
     option_group group;
     bool pixels;          // changes pixels or which layers exist: belongs into the header record
     const char *fallback; // the default as the help shows it; NULL when "not given" needs no words
+    bool hidden;          // for build scripts: not in the help, the manual and the completions
     const char *help;     // whole sentences
 } option_row;
 

@@ -63,6 +63,7 @@ static void help_lists_every_row(void **state)
     for (int i = 0; i < option_row_count; i++) {
         const option_row *row = &option_rows[i];
         char left[128];
+        if (row->hidden) continue;
         if (row->letter)
             snprintf(left, sizeof left, "\n  -%c, --%s%s%s", row->letter, row->name, row->argument ? " " : "",
                      row->argument ? row->argument : "");
