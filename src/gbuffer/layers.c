@@ -66,14 +66,20 @@ static void fill(const exr_file *file, int p, int c, layer_entry *out)
         snprintf(out->layer, sizeof out->layer, "%s", own[0] ? own : prefix);
 }
 
-bool layers_index(const exr_file *file, layer_index *out, error *e)
+bool layers_index(const exr_file *file, const char *view, layer_index *out, error *e)
 {
     int total = 0;
     for (int p = 0; p < file->part_count; p++) total += file->parts[p].channel_count;
     *out = (layer_index){.entries = mem_zero((size_t)total, sizeof *out->entries, e)};
     if (!out->entries) return false;
     for (int p = 0; p < file->part_count; p++)
-        for (int c = 0; c < file->parts[p].channel_count; c++) fill(file, p, c, &out->entries[out->count++]);
+        for (int c = 0; c < file->parts[p].channel_count; c++) {
+            layer_entry *entry = &out->entries[out->count];
+            fill(file, p, c, entry);
+            if (view && entry->view[0] && strcmp(entry->view, view) != 0) continue;
+            if (view) entry->view[0] = 0;
+            out->count++;
+        }
     return true;
 }
 

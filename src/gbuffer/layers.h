@@ -18,7 +18,8 @@ typedef struct layer_index {
     int count;
 } layer_index;
 
-bool layers_index(const exr_file *file, layer_index *out, error *e);
+// view: leave out the channels of other stereo views, and say of none which it is of; NULL: all.
+bool layers_index(const exr_file *file, const char *view, layer_index *out, error *e);
 void layers_free(layer_index *index);
 
 // A group of channels found for a pattern.

@@ -306,7 +306,7 @@ bool resolve_channels(const exr_file *file, const resolve_options *options, reso
     search s = {.file = file, .options = options, .e = e};
     bool done = false;
     *out = (resolution){0};
-    if (!layers_index(file, &s.index, e)) return false;
+    if (!layers_index(file, options->view, &s.index, e)) return false;
     choose_row(&s);
     if (!choose_key(&s) || !find_roles(&s, out)) goto out;
     bool has_position = out->components[ROLE_POSITION] > 0;

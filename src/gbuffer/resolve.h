@@ -36,6 +36,7 @@ typedef enum albedo_kind { ALBEDO_AUTO, ALBEDO_BASE, ALBEDO_DIFFUSE } albedo_kin
 typedef struct resolve_options {
     const char *names[ROLE_COUNT]; // --position, --normal, ...: layer or channel name; NULL = detect
     const char *view_layer;        // --view-layer, NULL = the only one
+    const char *view;              // only channels of this stereo view, and of none; NULL = all
     depth_kind depth;
     albedo_kind albedo;
 } resolve_options;

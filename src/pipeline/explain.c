@@ -83,13 +83,13 @@ static bool explain_files(const options *o, const input_paths *in, FILE *to, err
     job j = {.o = &only_what_is_needed, .log = &log, .threads = o->threads > 0 ? o->threads : threads_default()};
     bool ok = frame_read_files(&j, in->list, in->count, &r, e);
     for (int i = 0; i < in->count; i++) fprintf(to, "%s\n", in->list[i]);
-    if (r.file && r.resolution.convention) {
-        explain_renderer(&r, to);
-        explain_roles(&r, to);
-    }
-    if (ok) {
-        explain_evidence(&r, to);
-        explain_plan(&r, to);
+    for (const frame_result *v = &r; v && v->file && v->resolution.convention; v = v->next_view) {
+        if (v->view) fprintf(to, "\nview %s\n", v->view);
+        explain_renderer(v, to);
+        explain_roles(v, to);
+        if (!ok) continue;
+        explain_evidence(v, to);
+        explain_plan(v, to);
     }
     if (log.warning_count) heading(to, "warnings");
     for (int i = 0; i < log.warning_count; i++) fprintf(to, "  %s\n", log.warnings[i]);

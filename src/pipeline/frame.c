@@ -12,6 +12,7 @@
 #include "pipeline/filter.h"
 #include "pipeline/output.h"
 #include "pipeline/stored.h"
+#include "pipeline/views.h"
 
 typedef struct stopwatch {
     double wall, cpu;
@@ -74,22 +75,52 @@ static void want_channels(const job *j, exr_file *file, const resolution *r, con
 
 bool frame_read(const job *j, const char *input, frame_result *r, error *e) { return frame_read_files(j, &input, 1, r, e); }
 
+// One view's channels, and what will be made of them.
+static bool resolve_view(const job *j, frame_result *r, error *e)
+{
+    resolve_options ro = resolve_options_of(j->o);
+    ro.view = r->view;
+    if (r->view && ro.view_layer && strcmp(r->view, ro.view_layer) == 0) ro.view_layer = NULL;
+    if (!resolve_channels(r->file, &ro, &r->resolution, j->log, e) ||
+        !plan_make(j->o, r->file, &r->resolution, &r->plan, j->log, e) || !output_check_names(j->o, r->file, &r->plan, e))
+        return false;
+    want_channels(j, r->file, &r->resolution, &r->plan);
+    return !r->plan.from_sh || stored_sh_want(j->o, r->file, r->view, e);
+}
+
+static bool build_view(const job *j, frame_result *r, error *e)
+{
+    gbuffer_options g = {
+        .need = r->plan.need, .camera_file = j->o->camera_file, .fov = j->o->fov, .ortho = j->o->ortho, .threads = j->threads};
+    if (r->view) log_info(j->log, "view %s:", r->view);
+    return gbuffer_build(r->file, &r->resolution, &g, &r->gb, j->log, e) &&
+           (!r->plan.from_sh || stored_sh_load(j->o, r->file, r->view, &r->gb, r->stored_sh, e));
+}
+
+// The first view is *r itself; the others are appended.
+static bool list_views(const job *j, frame_result *r, error *e)
+{
+    const char *names[VIEWS_MAX];
+    int count = views_of(r->file, j->o, names);
+    if (count > 0) r->view = names[0];
+    for (int i = 1; i < count; i++, r = r->next_view) {
+        r->next_view = mem_zero(1, sizeof *r, e);
+        if (!r->next_view) return false;
+        r->next_view->file = r->file;
+        r->next_view->view = names[i];
+    }
+    return true;
+}
+
 bool frame_read_files(const job *j, const char *const *inputs, int count, frame_result *r, error *e)
 {
     *r = (frame_result){0};
     stopwatch t = read_clocks();
-    resolve_options ro = resolve_options_of(j->o);
-    if (!exr_file_open_all(inputs, count, &r->file, e) || !resolve_channels(r->file, &ro, &r->resolution, j->log, e) ||
-        !plan_make(j->o, r->file, &r->resolution, &r->plan, j->log, e) || !output_check_names(j->o, r->file, &r->plan, e))
-        return false;
-    want_channels(j, r->file, &r->resolution, &r->plan);
-    if (r->plan.from_sh && !stored_sh_want(j->o, r->file, e)) return false;
-    if (!exr_file_load(r->file, j->threads, e)) return false;
+    bool ok = exr_file_open_all(inputs, count, &r->file, e) && list_views(j, r, e);
+    for (frame_result *v = r; ok && v; v = v->next_view) ok = resolve_view(j, v, e);
+    if (!ok || !exr_file_load(r->file, j->threads, e)) return false;
     lap(r, STAGE_READ, &t);
-    gbuffer_options g = {
-        .need = r->plan.need, .camera_file = j->o->camera_file, .fov = j->o->fov, .ortho = j->o->ortho, .threads = j->threads};
-    bool ok = gbuffer_build(r->file, &r->resolution, &g, &r->gb, j->log, e) &&
-              (!r->plan.from_sh || stored_sh_load(j->o, r->file, &r->gb, r->stored_sh, e));
+    for (frame_result *v = r; ok && v; v = v->next_view) ok = build_view(j, v, e);
     lap(r, STAGE_RESOLVE, &t);
     return ok;
 }
@@ -183,11 +214,11 @@ static int samples_at(const method *m, int quality)
     return quality < 0 ? m->samples / 4 : quality > 0 ? m->samples * 4 : m->samples;
 }
 
-static pass_settings settings_of(const job *j, const frame_result *r)
+static pass_settings settings_of(const job *j, const frame_result *r, double radius)
 {
     const options *o = j->o;
     const method *m = r->plan.method;
-    double radius = radius_of(j, &r->gb), share = o->thickness < 0.0 ? m->thickness : o->thickness;
+    double share = o->thickness < 0.0 ? m->thickness : o->thickness;
     bool beauty = r->resolution.components[ROLE_BEAUTY] > 0, alpha = r->resolution.components[ROLE_ALPHA] > 0;
     return (pass_settings){
         .radius = radius,
@@ -221,12 +252,20 @@ static pass_settings settings_of(const job *j, const frame_result *r)
     };
 }
 
-bool frame_filter(job *j, frame_result *r, error *e)
+static bool filter_view(job *j, frame_result *r, double radius, error *e)
 {
     if (r->gb.valid == 0) log_warn(j->log, "empty", "%s: no pixel has a surface; the layers are neutral", r->file->path);
-    r->set = settings_of(j, r);
+    r->set = settings_of(j, r, radius);
     describe(j, r);
     return check_world(j, r, e) && prepare_light(j, r, e) && filter_frame(j, r, e);
+}
+
+bool frame_filter(job *j, frame_result *r, error *e)
+{
+    double radius = radius_of(j, &r->gb);
+    for (frame_result *v = r; v; v = v->next_view)
+        if (!filter_view(j, v, radius, e)) return false;
+    return true;
 }
 
 bool frame_write(const job *j, frame_result *r, const char *output, error *e)
@@ -276,11 +315,21 @@ bool frame_measure_radius(const job *j, const char *const *inputs, int count, do
     return ok;
 }
 
-void frame_free(frame_result *r)
+static void free_view(frame_result *r)
 {
     for (int i = 0; i < LAYER_COUNT; i++) free(r->layers[i]);
     for (int k = 0; k < 3; k++) free(r->stored_sh[k]);
     gbuffer_free(&r->gb);
+}
+
+void frame_free(frame_result *r)
+{
+    for (frame_result *v = r->next_view, *next; v; v = next) {
+        next = v->next_view;
+        free_view(v);
+        free(v);
+    }
+    free_view(r);
     exr_file_close(r->file);
     *r = (frame_result){0};
 }

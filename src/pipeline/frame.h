@@ -30,7 +30,8 @@ typedef struct job {
 
 typedef enum stage { STAGE_READ, STAGE_RESOLVE, STAGE_PASSES, STAGE_READ_BACK, STAGE_WRITE, STAGE_COUNT } stage;
 
-// What one frame did, for -v and --report.
+// What one frame did, for -v and --report. A stereo file has one for each view, in a list; each view has its own camera, and all
+// have the first one's radius.
 typedef struct frame_result {
     exr_file *file; // the input, open
     resolution resolution;
@@ -48,6 +49,8 @@ typedef struct frame_result {
     float *layers[LAYER_COUNT];           // width * height * channels, interleaved; NULL where not made
     float *stored_sh[3];                  // --from-sh: what the input brought along, else NULL
     bool second_part;
+    const char *view;               // the stereo view this is, the file's string; NULL without views
+    struct frame_result *next_view; // owned; shares the file
 } frame_result;
 
 // stop and progress are the caller's to set afterwards.

@@ -7,13 +7,12 @@
 
 #include "base/mem.h"
 #include "exr/write.h"
+#include "pipeline/views.h"
 
 enum { MAX_OURS = LAYER_COUNT * 4 + 5, NAME_SIZE = 96, MAX_ATTRS = 10 };
 
-// Everything exr_write borrows.
+// Everything exr_write borrows for one view.
 typedef struct assembly {
-    exr_out_part *parts;
-    int part_count;
     char names[MAX_OURS][NAME_SIZE];
     exr_out_channel ours[MAX_OURS];
     void *data[MAX_OURS]; // owned
@@ -21,7 +20,16 @@ typedef struct assembly {
     exr_out_attr attrs[MAX_ATTRS];
     int attr_count;
     char args[1024], camera[512], environment[600];
+    char part_name[64];
 } assembly;
+
+// All of it.
+typedef struct book {
+    assembly *views[VIEWS_MAX]; // owned
+    int view_count;
+    exr_out_part *parts;
+    int part_count;
+} book;
 
 static void channel_name(const options *o, layer_id l, int k, char *name)
 {
@@ -183,17 +191,35 @@ static int keep_channels(const options *o, const plan *p, const exr_part *part, 
     return n;
 }
 
-static bool can_merge(const exr_file *f)
+static bool share_a_name(const exr_part *a, const exr_part *b)
 {
-    for (int i = 1; i < f->part_count; i++) {
-        const exr_part *p = &f->parts[i], *first = &f->parts[0];
-        if (!box2_equal(p->data_window, first->data_window) || !box2_equal(p->display_window, first->display_window))
-            return false;
-        for (int k = 0; k < i; k++)
-            for (int a = 0; a < p->channel_count; a++)
-                for (int b = 0; b < f->parts[k].channel_count; b++)
-                    if (strcmp(p->channels[a].name, f->parts[k].channels[b].name) == 0) return false;
-    }
+    for (int i = 0; i < a->channel_count; i++)
+        for (int k = 0; k < b->channel_count; k++)
+            if (strcmp(a->channels[i].name, b->channels[k].name) == 0) return true;
+    return false;
+}
+
+// A part's name is the layer of its X, Y and Z, which would be lost.
+static bool is_bare_vector(const exr_part *p)
+{
+    bool bare = false;
+    for (int c = 0; c < p->channel_count; c++) bare = bare || strcmp(p->channels[c].name, "X") == 0;
+    return bare && p->name[0];
+}
+
+// The view's parts have the same windows and distinct channel names.
+static bool can_merge(const exr_file *f, const char *view)
+{
+    for (int i = 1; i < f->part_count; i++)
+        if (view_has(&f->parts[i], view) && is_bare_vector(&f->parts[i])) return false;
+    for (int i = 0; i < f->part_count; i++)
+        for (int k = 0; k < i && view_has(&f->parts[i], view); k++) {
+            const exr_part *a = &f->parts[i], *b = &f->parts[k];
+            if (!view_has(b, view)) continue;
+            if (!box2_equal(a->data_window, b->data_window) || !box2_equal(a->display_window, b->display_window) ||
+                share_a_name(a, b))
+                return false;
+        }
     return true;
 }
 
@@ -232,58 +258,106 @@ static void append_ours(assembly *a, exr_out_part *part)
     part->attribute_count = a->attr_count;
 }
 
-static bool make_parts(assembly *a, const job *j, frame_result *r, error *e)
+// The view's parts and our layers as one.
+static bool merge_parts(book *k, assembly *a, const job *j, const frame_result *r, error *e)
 {
     const exr_file *f = r->file;
-    int main_part = r->resolution.main_part;
-    bool merge = j->o->keep_none || (!j->o->multipart && can_merge(f));
-    a->parts = mem_zero((size_t)f->part_count + 1, sizeof *a->parts, e);
-    if (!a->parts) return false;
-    if (merge) {
-        exr_out_part *only = &a->parts[a->part_count++];
-        *only = part_like(j->o, f, main_part);
-        if (f->part_count > 1) only->name = only->view = NULL;
-        if (!room(only, total_channels(f) + a->our_count, e)) return false;
-        for (int i = 0; !j->o->keep_none && i < f->part_count; i++)
+    exr_out_part *only = &k->parts[k->part_count++];
+    *only = part_like(j->o, f, r->resolution.main_part);
+    if (f->part_count > 1 && !r->view) only->name = only->view = NULL;
+    if (r->view) only->view = r->view;
+    if (r->view && !only->name[0]) only->name = r->view;
+    if (!room(only, total_channels(f) + a->our_count, e)) return false;
+    for (int i = 0; !j->o->keep_none && i < f->part_count; i++)
+        if (view_has(&f->parts[i], r->view))
             only->channel_count += keep_channels(j->o, &r->plan, &f->parts[i], true, only->channels + only->channel_count);
-        append_ours(a, only);
-        return true;
-    }
+    append_ours(a, only);
+    return true;
+}
+
+static bool keep_part(book *k, const job *j, const frame_result *r, int i, error *e)
+{
+    const exr_file *f = r->file;
+    exr_out_part *part = &k->parts[k->part_count++];
+    *part = part_like(j->o, f, i);
+    if (output_keeps_chunks(j->o, f, i, &r->plan)) part->compression = f->parts[i].compression;
+    if (!room(part, f->parts[i].channel_count, e)) return false;
+    part->channel_count = keep_channels(j->o, &r->plan, &f->parts[i], false, part->channels);
+    part->verbatim = output_keeps_chunks(j->o, f, i, &r->plan);
+    if (!part->name[0]) part->name = "input"; // parts of a multi-part file need names
+    return true;
+}
+
+// The view's parts as they are, and one with our layers: "ssdo", or "ssdo.left".
+static bool add_part(book *k, assembly *a, const job *j, frame_result *r, error *e)
+{
+    const exr_file *f = r->file;
+    snprintf(a->part_name, sizeof a->part_name, "ssdo%s%s", r->view ? "." : "", r->view ? r->view : "");
     for (int i = 0; i < f->part_count; i++) {
-        if (strcmp(f->parts[i].name, "ssdo") == 0 && exr_attr_exists(f, i, "ssdo/version")) continue; // an earlier run's layers
-        exr_out_part *part = &a->parts[a->part_count++];
-        *part = part_like(j->o, f, i);
-        if (output_keeps_chunks(j->o, f, i, &r->plan)) part->compression = f->parts[i].compression;
-        if (!room(part, f->parts[i].channel_count, e)) return false;
-        part->channel_count = keep_channels(j->o, &r->plan, &f->parts[i], false, part->channels);
-        part->verbatim = output_keeps_chunks(j->o, f, i, &r->plan);
-        if (!part->name[0]) part->name = "input"; // parts of a multi-part file need names
+        bool earlier_run = strcmp(f->parts[i].name, a->part_name) == 0 && exr_attr_exists(f, i, "ssdo/version");
+        if (view_has(&f->parts[i], r->view) && !earlier_run && !keep_part(k, j, r, i, e)) return false;
     }
-    exr_out_part *mine = &a->parts[a->part_count++];
-    *mine = part_like(j->o, f, main_part);
-    mine->name = "ssdo";
+    exr_out_part *mine = &k->parts[k->part_count++];
+    *mine = part_like(j->o, f, r->resolution.main_part);
+    mine->name = a->part_name;
+    if (r->view) mine->view = r->view;
     mine->attributes_from = NULL;
     if (!room(mine, a->our_count, e)) return false;
     append_ours(a, mine);
     r->second_part = true;
-    if (j->o->multipart) return true;
-    log_warn(j->log, "second-part",
-             "%s: its parts differ in window or share channel names, so our layers go into a part named 'ssdo'", f->path);
+    if (!j->o->multipart)
+        log_warn(j->log, "second-part",
+                 "%s: its parts differ in window or share channel names, so our layers go into a part named '%s'", f->path,
+                 a->part_name);
     return true;
+}
+
+static bool is_filtered(const exr_part *part, const frame_result *first)
+{
+    for (; first; first = first->next_view)
+        if (view_has(part, first->view)) return true;
+    return false;
+}
+
+// Parts of no view that was filtered.
+static bool keep_others(book *k, const job *j, const frame_result *first, error *e)
+{
+    for (int i = 0; !j->o->keep_none && i < first->file->part_count; i++)
+        if (!is_filtered(&first->file->parts[i], first) && !keep_part(k, j, first, i, e)) return false;
+    return true;
+}
+
+static bool add_view(book *k, const job *j, frame_result *r, error *e)
+{
+    assembly *a = k->views[k->view_count] = mem_zero(1, sizeof *a, e);
+    if (!a) return false;
+    k->view_count++;
+    if (!add_layers(a, j, r, e)) return false;
+    if (j->o->main_composite) add_main(a, j->o);
+    add_attributes(a, j, r);
+    bool merge = j->o->keep_none || (!j->o->multipart && can_merge(r->file, r->view));
+    return merge ? merge_parts(k, a, j, r, e) : add_part(k, a, j, r, e);
+}
+
+static void free_book(book *k)
+{
+    for (int v = 0; v < k->view_count; v++) {
+        for (int i = 0; i < MAX_OURS; i++) free(k->views[v]->data[i]);
+        free(k->views[v]);
+    }
+    for (int i = 0; i < k->part_count; i++) free(k->parts[i].channels);
+    free(k->parts);
 }
 
 bool output_write(const job *j, frame_result *r, const char *path, error *e)
 {
-    assembly *a = mem_zero(1, sizeof *a, e);
-    bool ok = a && add_layers(a, j, r, e);
-    if (ok && j->o->main_composite) add_main(a, j->o);
-    if (ok) {
-        add_attributes(a, j, r);
-        ok = make_parts(a, j, r, e) && exr_write(path, a->parts, a->part_count, j->threads, e);
-    }
-    for (int i = 0; a && i < MAX_OURS; i++) free(a->data[i]);
-    for (int i = 0; a && i < a->part_count; i++) free(a->parts[i].channels);
-    if (a) free(a->parts);
-    free(a);
+    book k = {.parts = mem_zero((size_t)r->file->part_count + VIEWS_MAX, sizeof *k.parts, e)};
+    bool ok = k.parts != NULL;
+    bool others_first = !is_filtered(&r->file->parts[0], r); // the default view stays the first
+    if (ok && others_first) ok = keep_others(&k, j, r, e);
+    for (frame_result *v = r; ok && v; v = v->next_view) ok = add_view(&k, j, v, e);
+    if (ok && !others_first) ok = keep_others(&k, j, r, e);
+    ok = ok && exr_write(path, k.parts, k.part_count, j->threads, e);
+    free_book(&k);
     return ok;
 }

@@ -12,8 +12,10 @@ bool output_check_names(const options *o, const exr_file *file, const plan *p, e
 // --layout multipart: true if the part goes through as stored, so that its channels need not be read for writing.
 bool output_keeps_chunks(const options *o, const exr_file *file, int part, const plan *p);
 
-// Writes the file. A single-part input stays single-part. Parts of a multi-part input are merged into one where windows and names
-// allow; otherwise they are kept as they are and our layers go into a part of their own, named "ssdo".
+// Writes the file. Of a stereo file each view is treated so: its parts keep their `view`, and our layers have the same names in
+// each. Parts of no filtered view follow as they are. A single-part input stays single-part. Parts of a multi-part input are
+// merged into one where windows and names allow; otherwise they are kept as they are and our layers go into a part of their own,
+// named "ssdo".
 bool output_write(const job *j, frame_result *r, const char *path, error *e);
 
 #endif

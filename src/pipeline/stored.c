@@ -7,6 +7,7 @@
 #include "base/half.h"
 #include "base/mem.h"
 #include "pipeline/layers.h"
+#include "pipeline/views.h"
 
 enum { NAME_SIZE = 96 };
 
@@ -16,24 +17,24 @@ static void name_of(const options *o, int layer, int k, char *name)
     snprintf(name, NAME_SIZE, "%s%s.%c", o->prefix ? o->prefix : "", l->name, l->channels[k]);
 }
 
-static exr_channel *find(const exr_file *file, const char *name, const exr_part **part)
+static exr_channel *find(const exr_file *file, const char *view, const char *name, const exr_part **part)
 {
     for (int p = 0; p < file->part_count; p++)
         for (int c = 0; c < file->parts[p].channel_count; c++)
-            if (strcmp(file->parts[p].channels[c].name, name) == 0) {
+            if (view_has(&file->parts[p], view) && strcmp(file->parts[p].channels[c].name, name) == 0) {
                 *part = &file->parts[p];
                 return &file->parts[p].channels[c];
             }
     return NULL;
 }
 
-bool stored_sh_want(const options *o, exr_file *file, error *e)
+bool stored_sh_want(const options *o, exr_file *file, const char *view, error *e)
 {
     const exr_part *part;
     for (int i = 0; i < 9; i++) {
         char name[NAME_SIZE];
         name_of(o, i / 3, i % 3, name);
-        exr_channel *channel = find(file, name, &part);
+        exr_channel *channel = find(file, view, name, &part);
         if (!channel)
             return err_set(
                 e, ERR_INPUT, file->path, name,
@@ -51,14 +52,14 @@ static float sample_at(const exr_channel *c, size_t i)
     return isfinite(v) ? v : 0.0f;
 }
 
-bool stored_sh_load(const options *o, const exr_file *file, const gbuffer *gb, float *out[3], error *e)
+bool stored_sh_load(const options *o, const exr_file *file, const char *view, const gbuffer *gb, float *out[3], error *e)
 {
     size_t n = (size_t)gb->width * (size_t)gb->height;
     for (int i = 0; i < 9; i++) {
         char name[NAME_SIZE];
         name_of(o, i / 3, i % 3, name);
         const exr_part *part = NULL;
-        const exr_channel *channel = find(file, name, &part);
+        const exr_channel *channel = find(file, view, name, &part);
         if (!channel || !channel->data || !box2_equal(part->data_window, gb->data_window))
             return err_set(e, ERR_INPUT, file->path, name,
                            "this stored layer has another data window than the picture's surfaces");

@@ -6,9 +6,10 @@
 #include "gbuffer/gbuffer.h"
 
 // Marks the nine channels <prefix>sh_0.R ... sh_2.B as wanted. ERR_INPUT names the first that is missing, and what writes them.
-bool stored_sh_want(const options *o, exr_file *file, error *e);
+// view: of a stereo file; NULL for any.
+bool stored_sh_want(const options *o, exr_file *file, const char *view, error *e);
 
 // The loaded channels as floats, three a pixel in each of the three arrays, which the caller frees. NaN and infinities become 0.
-bool stored_sh_load(const options *o, const exr_file *file, const gbuffer *gb, float *out[3], error *e);
+bool stored_sh_load(const options *o, const exr_file *file, const char *view, const gbuffer *gb, float *out[3], error *e);
 
 #endif

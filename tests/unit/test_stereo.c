@@ -1,0 +1,200 @@
+// Stereo files (OpenEXR's multi-view standard): each view is filtered as its own file would be, and written into its own parts.
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "must.h"
+#include "pipeline/frame.h"
+#include "renderer_file.h"
+
+enum { WIDTH = 96, HEIGHT = 64, EYES = 2, GROUPS = 5 };
+
+static char folder[] = "/tmp/ssdo-stereo-XXXXXX";
+static const char *const eyes[EYES] = {"left", "right"};
+static char mono[EYES][256]; // each eye's own file
+static options settings;
+static log_t quiet;
+static job work;
+
+static int set_up(void **state)
+{
+    static const renderer_fact plain = {.expected = "plain",
+                                        .position = "P:XYZ",
+                                        .normal = "N:XYZ",
+                                        .depth = "depth:Z",
+                                        .albedo = "albedo:RGB",
+                                        .beauty = ":RGBA"};
+    error e = {0};
+    scene s = {0};
+    (void)state;
+    if (!mkdtemp(folder)) return -1;
+    scene_clutter(&s);
+    for (int i = 0; i < EYES; i++) {
+        char paths[FACT_FILES][256];
+        int count;
+        view v = view_perspective(WIDTH, HEIGHT, i ? 48.0 : 45.0, 1.0); // the lenses differ too
+        view_look(&v, v3_add(s.eye, v3(0.4 * i, 0, 0)), v3_add(s.target, v3(0.1 * i, 0, 0)), 0);
+        must(renderer_write(&plain, &s, &v, folder, paths, &count, &e), &e);
+        snprintf(mono[i], sizeof mono[i], "%s/%s.exr", folder, eyes[i]);
+        assert_int_equal(rename(paths[0], mono[i]), 0);
+    }
+    options_defaults(&settings);
+    settings.radius_unit = RADIUS_WORLD, settings.radius = 0.8, settings.samples = 16;
+    log_init(&quiet, LOG_QUIET);
+    must(job_open(&work, &settings, &quiet, &e), &e);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    char command[64];
+    (void)state;
+    job_close(&work);
+    log_free(&quiet);
+    snprintf(command, sizeof command, "rm -rf %s", folder);
+    return system(command);
+}
+
+// Both eyes as parts of one file: a part per eye, or one per eye and layer.
+static void write_stereo(const char *path, bool part_per_layer)
+{
+    static const char *const layers[GROUPS] = {"", "P.", "N.", "depth.", "albedo."};
+    static exr_out_channel channels[EYES * GROUPS][16];
+    static char names[EYES * GROUPS][32];
+    exr_out_part parts[EYES * GROUPS] = {0};
+    exr_file *files[EYES];
+    error e = {0};
+    int n = 0;
+    for (int i = 0; i < EYES; i++) {
+        must(exr_file_open(mono[i], &files[i], &e), &e);
+        exr_part *from = &files[i]->parts[0];
+        for (int c = 0; c < from->channel_count; c++) from->channels[c].wanted = true;
+        must(exr_file_load(files[i], 1, &e), &e);
+        for (int g = 0; g < (part_per_layer ? GROUPS : 1); g++, n++) {
+            snprintf(names[n], sizeof names[n], "%s%s", part_per_layer ? g ? layers[g] : "rgba." : "", eyes[i]);
+            parts[n] = (exr_out_part){.name = names[n],
+                                      .view = eyes[i],
+                                      .data_window = from->data_window,
+                                      .display_window = from->display_window,
+                                      .pixel_aspect = 1,
+                                      .compression = 3,
+                                      .channels = channels[n]};
+            for (int c = 0; c < from->channel_count; c++) {
+                const exr_channel *ch = &from->channels[c];
+                bool in = g ? strncmp(ch->name, layers[g], strlen(layers[g])) == 0 : !strchr(ch->name, '.');
+                if (!in && part_per_layer) continue;
+                // Within a part of its own, the layer's name is the part's.
+                const char *name = part_per_layer && g ? ch->name + strlen(layers[g]) : ch->name;
+                channels[n][parts[n].channel_count++] = (exr_out_channel){name, ch->type, ch->data};
+            }
+        }
+    }
+    must(exr_write(path, parts, n, 1, &e), &e);
+    for (int i = 0; i < EYES; i++) exr_file_close(files[i]);
+}
+
+static void same_layers(const frame_result *a, const frame_result *b)
+{
+    for (int l = LAYER_OCCLUSION; l <= LAYER_COMPOSITE; l++) {
+        size_t n = (size_t)a->gb.width * (size_t)a->gb.height * strlen(layer_table[l].channels);
+        assert_true(a->layers[l] && b->layers[l]);
+        assert_memory_equal(a->layers[l], b->layers[l], n * sizeof(float));
+    }
+}
+
+static int channel_count(const exr_file *f, const char *view, const char *name)
+{
+    int n = 0;
+    for (int p = 0; p < f->part_count; p++)
+        for (int c = 0; c < f->parts[p].channel_count; c++)
+            n += strcmp(f->parts[p].view, view) == 0 && strcmp(f->parts[p].channels[c].name, name) == 0;
+    return n;
+}
+
+static void check(bool part_per_layer, bool multipart, int parts)
+{
+    char in[300], out[300];
+    error e = {0};
+    frame_result both, one;
+    exr_file *f;
+    snprintf(in, sizeof in, "%s/stereo.exr", folder);
+    snprintf(out, sizeof out, "%s/out.exr", folder);
+    write_stereo(in, part_per_layer);
+    settings.multipart = multipart;
+    must(frame_run(&work, in, out, &both, &e), &e);
+    const frame_result *v = &both;
+    for (int i = 0; i < EYES; i++, v = v->next_view) {
+        assert_non_null(v);
+        assert_string_equal(v->view, eyes[i]);
+        must(frame_read(&work, mono[i], &one, &e), &e);
+        must(frame_filter(&work, &one, &e), &e);
+        same_layers(v, &one);
+        frame_free(&one);
+    }
+    assert_null(v);
+    assert_true(fabs(both.gb.camera.fx / both.next_view->gb.camera.fx - 1.0) > 0.05); // each has its own lens
+    frame_free(&both);
+    must(exr_file_open(out, &f, &e), &e);
+    assert_int_equal(f->part_count, parts);
+    for (int i = 0; i < EYES; i++) {
+        const char *want[] = {"occlusion.R", "radiance.G", "indirect.B", "composite.R", "composite.A", "R"};
+        for (int k = 0; k < 6; k++) assert_int_equal(channel_count(f, eyes[i], want[k]), part_per_layer && k == 5 ? 2 : 1);
+    }
+    exr_file_close(f);
+}
+
+static void a_part_per_eye(void **state)
+{
+    (void)state;
+    check(false, false, 2);
+    check(false, true, 4);
+}
+
+static void a_part_per_eye_and_layer(void **state)
+{
+    (void)state;
+    check(true, false, 12);
+}
+
+// --view-layer names one eye; the other passes through.
+static void one_eye_of_two(void **state)
+{
+    char in[300], out[300];
+    error e = {0};
+    frame_result r;
+    exr_file *f;
+    (void)state;
+    snprintf(in, sizeof in, "%s/stereo.exr", folder);
+    snprintf(out, sizeof out, "%s/out.exr", folder);
+    write_stereo(in, false);
+    settings.multipart = false;
+    settings.view_layer = "right";
+    must(frame_run(&work, in, out, &r, &e), &e);
+    assert_null(r.next_view);
+    frame_free(&r);
+    must(exr_file_open(out, &f, &e), &e);
+    assert_int_equal(f->part_count, 2);
+    assert_int_equal(channel_count(f, "right", "occlusion.R"), 1);
+    assert_int_equal(channel_count(f, "left", "occlusion.R"), 0);
+    assert_int_equal(channel_count(f, "left", "P.X"), 1);
+    exr_file_close(f);
+    settings.view_layer = NULL;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_part_per_eye),
+        cmocka_unit_test(a_part_per_eye_and_layer),
+        cmocka_unit_test(one_eye_of_two),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
