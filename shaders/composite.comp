@@ -1,10 +1,11 @@
 #version 450 core
-// lint: RELIGHT DIFFUSE ALBEDO RADIANCE INDIRECT SPECULAR EMISSION BEAUTY COVERAGE MULTIPLY_ALL DEPTHMASK | RELIGHT VISIBILITY ALBEDO | SPLIT BEAUTY ALBEDO RADIANCE | BEAUTY ALBEDO INDIRECT COVERAGE
+// lint: RELIGHT BACKGROUND=1 DIFFUSE ALBEDO RADIANCE INDIRECT SPECULAR EMISSION BEAUTY COVERAGE MULTIPLY_ALL DEPTHMASK | RELIGHT BACKGROUND=2 VISIBILITY ALBEDO | RELIGHT BACKGROUND=0 RADIANCE ALBEDO | SPLIT BEAUTY ALBEDO RADIANCE | BEAUTY ALBEDO INDIRECT COVERAGE
 // The lit picture (DESIGN.md, Composite). One of:
 //   RELIGHT            kD albedo (radiance + indirect) + specular + emission          (radiance mode)
 //   RELIGHT VISIBILITY kD albedo (E_SH / pi visibility + indirect) + specular + emission   (visibility mode)
 //   SPLIT              beauty - (1 - a) albedo direct  (+ albedo indirect)             only direct diffuse light is occluded
 //   (none)             beauty a (+ albedo indirect)                                    a = lerp(1, occlusion, amount)
+// BACKGROUND: what is behind surfaces that are relit: 0 nothing, 1 the beauty, 2 the environment.
 // MULTIPLY_ALL: chapter 4's way, the occlusion is multiplied onto the specular light too (THEORY.md 1.10). DEPTHMASK: the whole is
 // scaled by 1 + strength x depthmask; Luft adds it to display values, but a sum would go negative and depend on the exposure.
 // Relit pixels that the surface covers by k < 1: k surface + (1 - k) background.
@@ -14,7 +15,7 @@
 layout(std140, binding = 1) uniform Params {
     float amount;
     int averaged;   // albedo and emission are stored already multiplied by coverage
-    int background; // what is behind surfaces: 0 nothing, 1 the beauty, 2 the environment
+    int unused;
     float depthmask; // strength
 } params;
 
@@ -98,35 +99,35 @@ vec3 surface(ivec2 p, float k) {
 }
 
 // What is seen behind the surface of pixel p: the beauty of the nearest pixel that no surface touches, or the environment.
-vec3 background(ivec2 p) {
-    if (params.background == 2) {
-        vec3 ray = is_orthographic() ? vec3(0.0, 0.0, 1.0) : normalize(ray_at(vec2(p) + 0.5));
-        vec3 direction = to_map(ray);
-        float pixel = 1.0 / (frame.lens.x * frame.lens.y) * pow(ray.z, 3.0);
-        return radiance_from(direction, is_orthographic() ? 0.0 : map_level(direction, pixel));
-    }
-#ifdef BEAUTY
-    if (params.background == 1) {
-        int best = 1 << 20;
-        vec3 colour = vec3(0.0);
-        for (int y = -2; y <= 2; y++)
-            for (int x = -2; x <= 2; x++) {
-                ivec2 q = p + ivec2(x, y);
-                if (in_frame(q) && coverage_at(q) == 0.0 && x * x + y * y < best) {
-                    best = x * x + y * y;
-                    colour = imageLoad(beauty_image, q).rgb;
-                }
+// `wanted`: somebody looks. A software renderer runs the body of a branch for lanes that did not take it, but it leaves a loop when
+// no lane is left in it.
+vec3 background(ivec2 p, bool wanted) {
+#if BACKGROUND == 2
+    vec3 ray = is_orthographic() ? vec3(0.0, 0.0, 1.0) : normalize(ray_at(vec2(p) + 0.5));
+    vec3 direction = to_map(ray);
+    float pixel = 1.0 / (frame.lens.x * frame.lens.y) * pow(ray.z, 3.0);
+    return radiance_from(direction, is_orthographic() ? 0.0 : map_level(direction, pixel));
+#elif BACKGROUND == 1
+    int best = 1 << 20, reach = wanted ? 2 : -1;
+    vec3 colour = vec3(0.0);
+    for (int y = -reach; y <= reach; y++)
+        for (int x = -reach; x <= reach; x++) {
+            ivec2 q = p + ivec2(x, y);
+            if (in_frame(q) && coverage_at(q) == 0.0 && x * x + y * y < best) {
+                best = x * x + y * y;
+                colour = imageLoad(beauty_image, q).rgb;
             }
-        return colour;
-    }
-#endif
+        }
+    return colour;
+#else
     return vec3(0.0);
+#endif
 }
 
 vec3 composite(ivec2 p) {
     float k = coverage_at(p);
     vec3 colour = k > 0.0 ? surface(p, k) : vec3(0.0);
-    return k < 1.0 ? colour + (1.0 - k) * background(p) : colour;
+    return k < 1.0 ? colour + (1.0 - k) * background(p, k < 1.0) : colour;
 }
 #else
 vec3 composite(ivec2 p) {

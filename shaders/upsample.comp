@@ -2,7 +2,7 @@
 // lint: SCALARS=2 COLOURS=1 OPEN_LIGHT | SCALARS=1 COLOURS=0 OPEN_LIGHT | SCALARS=0 COLOURS=1
 // Layers of a frame of half the size (src/gbuffer/half.h) brought to the full one: a bilinear mean over the four nearest small pixels, each
 // weighing less the further it lies off the pixel's tangent plane, in small footprints, and the more its normal differs (as in
-// blur.comp). Where none of the four is on the pixel's surface, the best of sixteen is taken as it is; where no surface is near at all
+// blur.frag). Where none of the four is on the pixel's surface, the best of sixteen is taken as it is; where no surface is near at all
 // (a speck seen edge-on) the pixel is open, and with OPEN_LIGHT its light is the SH irradiance / pi.
 // SCALARS and COLOURS say how many r32f and rgba32f images go through together.
 #include "include/frame.glsl"

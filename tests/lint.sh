@@ -23,14 +23,15 @@ splice() {
 
 # A shader with compile-time variants lists the sets to check in a comment: // lint: A B=2 | C
 count=0
-for f in shaders/*.comp; do
+for f in shaders/*.comp shaders/*.frag; do
+    case $f in *.frag) kind=-DFRAGMENT=1 ;; *) kind= ;; esac
     splice "$f" >"$out/$(basename "$f")"
     sets=$(sed -n 's|^// lint: *||p' "$f")
     echo "${sets:-NOTHING}" | tr '|' '\n' >"$out/sets"
     while read -r set; do
         defines=
         for d in $set; do case $d in *=*) defines="$defines -D$d" ;; *) defines="$defines -D$d=1" ;; esac; done
-        glslangValidator -l $defines "$out/$(basename "$f")" >"$out/log" || { echo "lint: $f with $set:" >&2; cat "$out/log" >&2; exit 1; }
+        glslangValidator -l $kind $defines "$out/$(basename "$f")" >"$out/log" || { echo "lint: $f with $set:" >&2; cat "$out/log" >&2; exit 1; }
         count=$((count + 1))
     done <"$out/sets"
 done

@@ -1,8 +1,10 @@
 // What every pass knows of the frame: camera, size, and the surfaces (depth and normal) of camera space.
 // Camera space: x right, y down, z forward, the eye at the origin (src/gbuffer/camera.h).
 
+#ifndef FRAGMENT
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(location = 0) uniform ivec4 tile; // x0 y0 x1 y1, end exclusive
+#endif
 
 layout(std140, binding = 0) uniform Frame {
     vec4 lens;          // fx fy cx cy: focal length and principal point in pixels (orthographic: pixels per scene unit)
@@ -18,8 +20,12 @@ layout(rgba32f, binding = 1) readonly uniform image2D normal_image;
 const float PI = 3.14159265358979;
 const float ULP = 1.1920929e-7; // of 1.0 in float
 
+#ifdef FRAGMENT // a .frag shader: what is drawn is the tile
+ivec2 this_pixel() { return ivec2(gl_FragCoord.xy); }
+#else
 ivec2 this_pixel() { return tile.xy + ivec2(gl_GlobalInvocationID.xy); }
 bool in_tile(ivec2 p) { return all(lessThan(p, tile.zw)); }
+#endif
 bool in_frame(ivec2 p) { return all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, frame.size.xy)); }
 bool is_orthographic() { return frame.size.z == 1; }
 

@@ -174,6 +174,8 @@ void gpu_close(gpu *g)
 {
     if (!g->context) return;
     gpu_programs_free(g);
+    if (g->framebuffer) glDeleteFramebuffers(1, &g->framebuffer);
+    if (g->vertex_array) glDeleteVertexArrays(1, &g->vertex_array);
     eglMakeCurrent(g->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(g->display, g->context);
     eglTerminate(g->display);

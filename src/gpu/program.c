@@ -66,6 +66,12 @@ static const char *source_of(splice *s, const char *name, error *e)
     return NULL;
 }
 
+static bool is_fragment(const char *name)
+{
+    size_t n = strlen(name);
+    return n > 5 && strcmp(name + n - 5, ".frag") == 0;
+}
+
 // Splices the file's lines, following #include "..." once per file. A first line "#version" goes before the defines.
 static bool splice_file(splice *s, const char *name, const char *defines, error *e)
 {
@@ -99,6 +105,7 @@ static bool splice_file(splice *s, const char *name, const char *defines, error 
                 if (m && (!append(s, "#define ", 8, e) || !append(s, d, m, e) || !append(s, "\n", 1, e))) return false;
                 d += m + (d[m] == '\n');
             }
+            if (is_fragment(name) && !append(s, "#define FRAGMENT 1\n", 19, e)) return false;
             if (!append(s, "#line 2 0\n", 10, e)) return false;
         }
         p += n;
@@ -106,23 +113,38 @@ static bool splice_file(splice *s, const char *name, const char *defines, error 
     return true;
 }
 
-static GLuint compile(const splice *s, const char *name, error *e)
+// One triangle over the whole picture; the scissor cuts out the tile.
+static const char vertex_text[] =
+    "#version 450 core\n"
+    "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }\n";
+
+static bool attach(GLuint program, GLenum kind, const char *text, char *message, GLsizei size)
 {
-    GLuint shader = glCreateShader(GL_COMPUTE_SHADER), program = glCreateProgram();
-    const char *text = s->text;
-    char message[400] = "";
+    GLuint shader = glCreateShader(kind);
     GLint ok = 0;
     glShaderSource(shader, 1, &text, NULL);
     glCompileShader(shader);
     glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
-    if (!ok) glGetShaderInfoLog(shader, sizeof message, NULL, message);
-    if (ok) {
+    if (ok)
         glAttachShader(program, shader);
+    else
+        glGetShaderInfoLog(shader, size, NULL, message);
+    glDeleteShader(shader); // the program keeps what it was given
+    return ok;
+}
+
+static GLuint compile(const splice *s, const char *name, error *e)
+{
+    GLuint program = glCreateProgram();
+    char message[400] = "";
+    GLint ok = is_fragment(name) ? attach(program, GL_VERTEX_SHADER, vertex_text, message, sizeof message) &&
+                                       attach(program, GL_FRAGMENT_SHADER, s->text, message, sizeof message)
+                                 : attach(program, GL_COMPUTE_SHADER, s->text, message, sizeof message);
+    if (ok) {
         glLinkProgram(program);
         glGetProgramiv(program, GL_LINK_STATUS, &ok);
         if (!ok) glGetProgramInfoLog(program, sizeof message, NULL, message);
     }
-    glDeleteShader(shader);
     if (ok) return program;
     glDeleteProgram(program);
     int file = 0; // messages start with the file's number: "2:14(5): error"

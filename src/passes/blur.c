@@ -28,10 +28,10 @@ bool pass_blur(pass_context *c, gpu_image *scalar0, gpu_image *scalar1, gpu_imag
             int step[2], radius;
             float sharpness;
         } params = {{direction == 0, direction == 1}, c->set.blur, SHARPNESS};
-        const pass_binding bindings[] = {{2, s0 ? s0 : &none, GL_READ_ONLY},   {3, &t0, GL_WRITE_ONLY},
-                                         {4, s1 ? s1 : &none, GL_READ_ONLY},   {5, &t1, GL_WRITE_ONLY},
-                                         {6, col ? col : &none, GL_READ_ONLY}, {7, &t2, GL_WRITE_ONLY}};
-        ok = pass_run(c, "blur", defines, &params, sizeof params, bindings, 6, false, e);
+        const pass_binding bindings[] = {
+            {2, s0 ? s0 : &none, GL_READ_ONLY}, {4, s1 ? s1 : &none, GL_READ_ONLY}, {6, col ? col : &none, GL_READ_ONLY}};
+        const gpu_image *targets[] = {s0 ? &t0 : NULL, s1 ? &t1 : NULL, col ? &t2 : NULL};
+        ok = pass_draw(c, "blur", defines, &params, sizeof params, bindings, 3, targets, 3, false, e);
         if (s0) swap(s0, &t0);
         if (s1) swap(s1, &t1);
         if (col) swap(col, &t2);

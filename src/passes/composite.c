@@ -10,15 +10,15 @@ bool pass_composite(pass_context *c, error *e)
     bool bounce = c->indirect.id && c->albedo.id && (s->relight || s->bounce_in_composite);
     struct {
         float amount;
-        int averaged, background;
+        int averaged, unused;
         float depthmask;
-    } params = {(float)s->amount, s->averaged_albedo, s->background, (float)s->depthmask_strength};
+    } params = {(float)s->amount, s->averaged_albedo, 0, (float)s->depthmask_strength};
     char defines[256];
-    snprintf(defines, sizeof defines, "%s%s%s%s%s%s%s%s%s", s->relight ? "RELIGHT 1\n" : "",
-             s->relight && s->visibility_mode ? "VISIBILITY 1\n" : "", split ? "SPLIT 1\n" : "", c->albedo.id ? "ALBEDO 1\n" : "",
-             split || (s->relight && !s->visibility_mode) ? "RADIANCE 1\n" : "", bounce ? "INDIRECT 1\n" : "",
-             s->relight && c->specular.id ? "SPECULAR 1\n" : "", s->relight && c->emission.id ? "EMISSION 1\n" : "",
-             c->beauty.id ? "BEAUTY 1\n" : "");
+    snprintf(defines, sizeof defines, "BACKGROUND %d\n%s%s%s%s%s%s%s%s%s", c->beauty.id || s->background != 1 ? s->background : 0,
+             s->relight ? "RELIGHT 1\n" : "", s->relight && s->visibility_mode ? "VISIBILITY 1\n" : "", split ? "SPLIT 1\n" : "",
+             c->albedo.id ? "ALBEDO 1\n" : "", split || (s->relight && !s->visibility_mode) ? "RADIANCE 1\n" : "",
+             bounce ? "INDIRECT 1\n" : "", s->relight && c->specular.id ? "SPECULAR 1\n" : "",
+             s->relight && c->emission.id ? "EMISSION 1\n" : "", c->beauty.id ? "BEAUTY 1\n" : "");
     if (c->coverage.id) snprintf(defines + strlen(defines), sizeof defines - strlen(defines), "COVERAGE 1\n");
     if (c->want_diffuse) strcat(defines, "DIFFUSE 1\n");
     if (s->multiply_all) strcat(defines, "MULTIPLY_ALL 1\n");

@@ -136,12 +136,10 @@ void pass_clock_stop(pass_context *c, pass_timing since)
                                                   now(CLOCK_PROCESS_CPUTIME_ID) - since.cpu_ms, c->tiles.occupied_count};
 }
 
-bool pass_run(pass_context *c, const char *name, const char *defines, const void *params, size_t params_size,
-              const pass_binding *bindings, int binding_count, bool everywhere, error *e)
+// What dispatched and drawn passes have in common: program, blocks and images in place.
+static bool set_up(pass_context *c, const char *file, const char *defines, const void *params, size_t params_size,
+                   const pass_binding *bindings, int binding_count, error *e)
 {
-    double wall = now(CLOCK_MONOTONIC), cpu = now(CLOCK_PROCESS_CPUTIME_ID);
-    char file[64];
-    snprintf(file, sizeof file, "%s.comp", name);
     GLuint program = gpu_program(c->g, file, defines, e);
     if (!program) return false;
     glUseProgram(program);
@@ -151,10 +149,37 @@ bool pass_run(pass_context *c, const char *name, const char *defines, const void
     gpu_bind_image(1, &c->normal, GL_READ_ONLY);
     glBindTextureUnit(0, c->environment.id);
     for (int i = 0; i < binding_count; i++) gpu_bind_image(bindings[i].unit, bindings[i].image, bindings[i].access);
-    gpu_dispatch_tiles(&c->tiles, everywhere);
+    return true;
+}
+
+static bool note_time(pass_context *c, const char *name, double wall, double cpu, bool everywhere, error *e)
+{
     if (c->timing && !gpu_finish(c->g, name, e)) return false;
     if (c->timing_count < PASS_MAX_TIMINGS)
         c->timings[c->timing_count++] = (pass_timing){name, now(CLOCK_MONOTONIC) - wall, now(CLOCK_PROCESS_CPUTIME_ID) - cpu,
                                                       everywhere ? c->tiles.columns * c->tiles.rows : c->tiles.occupied_count};
     return true;
+}
+
+bool pass_run(pass_context *c, const char *name, const char *defines, const void *params, size_t params_size,
+              const pass_binding *bindings, int binding_count, bool everywhere, error *e)
+{
+    double wall = now(CLOCK_MONOTONIC), cpu = now(CLOCK_PROCESS_CPUTIME_ID);
+    char file[64];
+    snprintf(file, sizeof file, "%s.comp", name);
+    if (!set_up(c, file, defines, params, params_size, bindings, binding_count, e)) return false;
+    gpu_dispatch_tiles(&c->tiles, everywhere);
+    return note_time(c, name, wall, cpu, everywhere, e);
+}
+
+bool pass_draw(pass_context *c, const char *name, const char *defines, const void *params, size_t params_size,
+               const pass_binding *bindings, int binding_count, const gpu_image *const targets[], int target_count,
+               bool everywhere, error *e)
+{
+    double wall = now(CLOCK_MONOTONIC), cpu = now(CLOCK_PROCESS_CPUTIME_ID);
+    char file[64];
+    snprintf(file, sizeof file, "%s.frag", name);
+    if (!set_up(c, file, defines, params, params_size, bindings, binding_count, e)) return false;
+    gpu_draw_tiles(c->g, &c->tiles, everywhere, targets, target_count);
+    return note_time(c, name, wall, cpu, everywhere, e);
 }

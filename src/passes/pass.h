@@ -53,7 +53,7 @@ typedef struct pass_settings {
     bool visibility_mode;
     bool base_albedo;     // albedo is a base colour: metals have one
     bool averaged_albedo; // albedo, emission are stored multiplied by coverage
-    int background;       // composite.comp's params.background
+    int background;       // composite.comp's BACKGROUND
     bool relight;         // the composite is lit by us; otherwise it is the beauty, occluded
     bool bounce_in_composite;
 } pass_settings;
@@ -120,6 +120,11 @@ bool pass_run(pass_context *c, const char *name, const char *defines, const void
 // Times of a pass that dispatches by itself: pass_clock_stop adds what has passed since to the timings.
 pass_timing pass_clock(const char *name);
 void pass_clock_stop(pass_context *c, pass_timing since);
+
+// The same with shaders/<name>.frag, whose output at location i is drawn into targets[i] (gpu_draw_tiles).
+bool pass_draw(pass_context *c, const char *name, const char *defines, const void *params, size_t params_size,
+               const pass_binding *bindings, int binding_count, const gpu_image *const targets[], int target_count,
+               bool everywhere, error *e);
 
 // Makes an image of the frame's size, cleared to `value` in every component.
 bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, error *e);

@@ -14,21 +14,21 @@ layout(std140, binding = 1) uniform Params {
 
 #if SCALARS > 0
 layout(r32f, binding = 2) readonly uniform image2D scalar0_in;
-layout(r32f, binding = 3) writeonly uniform image2D scalar0_out;
+layout(location = 0) out float scalar0_out;
 #endif
 #if SCALARS > 1
 layout(r32f, binding = 4) readonly uniform image2D scalar1_in;
-layout(r32f, binding = 5) writeonly uniform image2D scalar1_out;
+layout(location = 1) out float scalar1_out;
 #endif
 #if COLOURS > 0
 layout(rgba32f, binding = 6) readonly uniform image2D colour0_in;
-layout(rgba32f, binding = 7) writeonly uniform image2D colour0_out;
+layout(location = 2) out vec4 colour0_out;
 #endif
 
-struct Values { float scalar0, scalar1; vec4 colour0; };
+struct Values { float scalar0, scalar1; vec3 colour0; };
 
 Values load(ivec2 p) {
-    Values v = Values(0.0, 0.0, vec4(0.0));
+    Values v = Values(0.0, 0.0, vec3(0.0));
 #if SCALARS > 0
     v.scalar0 = imageLoad(scalar0_in, p).r;
 #endif
@@ -36,37 +36,36 @@ Values load(ivec2 p) {
     v.scalar1 = imageLoad(scalar1_in, p).r;
 #endif
 #if COLOURS > 0
-    v.colour0 = imageLoad(colour0_in, p);
+    v.colour0 = imageLoad(colour0_in, p).rgb;
 #endif
     return v;
 }
 
-void store(ivec2 p, Values v) {
+void store(Values v) {
 #if SCALARS > 0
-    imageStore(scalar0_out, p, vec4(v.scalar0));
+    scalar0_out = v.scalar0;
 #endif
 #if SCALARS > 1
-    imageStore(scalar1_out, p, vec4(v.scalar1));
+    scalar1_out = v.scalar1;
 #endif
 #if COLOURS > 0
-    imageStore(colour0_out, p, v.colour0);
+    colour0_out = vec4(v.colour0, 0.0);
 #endif
 }
 
 void main() {
     ivec2 p = this_pixel();
-    if (!in_tile(p)) return;
     Values centre = load(p);
     float depth = depth_at(p);
     if (depth == 0.0) {
-        store(p, centre);
+        store(centre);
         return;
     }
     vec3 P = position_of(p, depth), N = normal_at(p);
     float scale = 1.0 / (params.sharpness * footprint(depth));
     float sigma = 0.5 * float(params.radius);
     // Differences from the centre are summed, so that a constant passes unchanged to the bit.
-    Values sum = Values(0.0, 0.0, vec4(0.0));
+    Values sum = Values(0.0, 0.0, vec3(0.0));
     float total = 1.0;
     for (int i = -params.radius; i <= params.radius; i++) {
         ivec2 q = p + i * params.step;
@@ -81,5 +80,5 @@ void main() {
         sum.colour0 += w * (v.colour0 - centre.colour0);
         total += w;
     }
-    store(p, Values(centre.scalar0 + sum.scalar0 / total, centre.scalar1 + sum.scalar1 / total, centre.colour0 + sum.colour0 / total));
+    store(Values(centre.scalar0 + sum.scalar0 / total, centre.scalar1 + sum.scalar1 / total, centre.colour0 + sum.colour0 / total));
 }

@@ -1,0 +1,110 @@
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "gpu/gpu.h"
+
+int gpu_tile_size(void)
+{
+    const char *s = getenv("SSDO_TILE");
+    int size = s ? atoi(s) : 0;
+    return size > 0 && size <= 65536 ? size : GPU_TILE;
+}
+
+static bool any(const unsigned char *row, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (row[i]) return true;
+    return false;
+}
+
+bool gpu_tiles_of(gpu_tiles *t, int width, int height, int size, const unsigned char *mask, error *e)
+{
+    *t = (gpu_tiles){.width = width, .height = height, .size = size};
+    t->columns = (width + size - 1) / size;
+    t->rows = (height + size - 1) / size;
+    t->occupied = mem_zero((size_t)t->columns * (size_t)t->rows, 1, e);
+    if (!t->occupied) return false;
+    for (int y = 0; y < height; y++)
+        for (int column = 0; column < t->columns; column++) {
+            int x = column * size, n = x + size < width ? size : width - x;
+            unsigned char *occupied = &t->occupied[y / size * t->columns + column];
+            if (!*occupied) *occupied = any(mask + (size_t)y * (size_t)width + x, n);
+        }
+    for (int i = 0; i < t->columns * t->rows; i++) t->occupied_count += t->occupied[i];
+    return true;
+}
+
+bool gpu_tiles_make(gpu_tiles *t, int width, int height, int size, const float *mask, const float *coverage, error *e)
+{
+    size_t n = (size_t)width * (size_t)height;
+    unsigned char *surface = mem_pixels(n, 1, e);
+    if (!surface) return false;
+    for (size_t i = 0; i < n; i++) surface[i] = mask[i] != 0.0f || (coverage && coverage[i] > 0.0f);
+    bool ok = gpu_tiles_of(t, width, height, size, surface, e);
+    free(surface);
+    return ok;
+}
+
+void gpu_tiles_free(gpu_tiles *t)
+{
+    free(t->occupied);
+    *t = (gpu_tiles){0};
+}
+
+void gpu_dispatch_tiles(const gpu_tiles *t, bool everywhere)
+{
+    for (int row = 0; row < t->rows; row++)
+        for (int column = 0; column < t->columns; column++) {
+            if (!everywhere && !t->occupied[row * t->columns + column]) continue;
+            if (t->stop && *t->stop) return; // the frame will be dropped
+            int x0 = column * t->size, y0 = row * t->size;
+            int x1 = x0 + t->size < t->width ? x0 + t->size : t->width, y1 = y0 + t->size < t->height ? y0 + t->size : t->height;
+            glUniform4i(0, x0, y0, x1, y1);
+            glDispatchCompute((GLuint)(x1 - x0 + GPU_GROUP - 1) / GPU_GROUP, (GLuint)(y1 - y0 + GPU_GROUP - 1) / GPU_GROUP, 1);
+        }
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+}
+
+// Tiles side by side go into one draw, but not many: one draw should stay short.
+static int run_length(const gpu_tiles *t, int row, int column, bool everywhere)
+{
+    enum { LONGEST = 8 };
+    int n = 0;
+    while (n < LONGEST && column + n < t->columns && (everywhere || t->occupied[row * t->columns + column + n])) n++;
+    return n;
+}
+
+static void attach(gpu *g, const gpu_image *const targets[], int count)
+{
+    GLenum buffers[GPU_MAX_TARGETS] = {GL_NONE};
+    if (!g->framebuffer) glCreateFramebuffers(1, &g->framebuffer);
+    if (!g->vertex_array) glCreateVertexArrays(1, &g->vertex_array);
+    for (int i = 0; i < GPU_MAX_TARGETS; i++) {
+        GLuint id = i < count && targets[i] ? targets[i]->id : 0;
+        glNamedFramebufferTexture(g->framebuffer, GL_COLOR_ATTACHMENT0 + (GLenum)i, id, 0);
+        buffers[i] = id ? GL_COLOR_ATTACHMENT0 + (GLenum)i : GL_NONE;
+    }
+    glNamedFramebufferDrawBuffers(g->framebuffer, count, buffers);
+    glBindFramebuffer(GL_FRAMEBUFFER, g->framebuffer);
+    glBindVertexArray(g->vertex_array);
+}
+
+void gpu_draw_tiles(gpu *g, const gpu_tiles *t, bool everywhere, const gpu_image *const targets[], int target_count)
+{
+    attach(g, targets, target_count);
+    glViewport(0, 0, t->width, t->height);
+    glDisable(GL_DITHER);
+    glEnable(GL_SCISSOR_TEST);
+    for (int row = 0; row < t->rows; row++)
+        for (int column = 0; column < t->columns; column++) {
+            int n = run_length(t, row, column, everywhere);
+            if (n == 0) continue;
+            if (t->stop && *t->stop) break;                                   // the frame will be dropped
+            glScissor(column * t->size, row * t->size, n * t->size, t->size); // beyond the picture nothing is drawn
+            glDrawArrays(GL_TRIANGLES, 0, 3);
+            column += n - 1;
+        }
+    glDisable(GL_SCISSOR_TEST); // clears would obey it
+    for (int i = 0; i < target_count; i++) glNamedFramebufferTexture(g->framebuffer, GL_COLOR_ATTACHMENT0 + (GLenum)i, 0, 0);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
