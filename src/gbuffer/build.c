@@ -94,6 +94,7 @@ static bool summarise(build *b)
         log_warn(b->log, "normals-from-depth",
                  "no usable normals in the file: they are rebuilt from depth and show its facets "
                  "(--normal names a channel)");
+    defects_warn(b);
     if (g->position_is_camera_space) g->camera.has_world = false;
     if (b->has_header_pose)
         g->camera.world_from_camera = b->world_from_camera, g->camera.origin = b->eye, g->camera.has_world = true;

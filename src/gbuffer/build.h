@@ -2,6 +2,7 @@
 #ifndef SSDO_GBUFFER_BUILD_H
 #define SSDO_GBUFFER_BUILD_H
 
+#include <stdatomic.h>
 #include <stdint.h>
 
 #include "base/half.h"
@@ -16,6 +17,11 @@ typedef struct plane {
     int width, height; // of the channel's own part
     int dx, dy;        // frame pixel (x, y) is the part's (x + dx, y + dy)
 } plane;
+
+static inline bool plane_holds(const plane *p, int x, int y)
+{
+    return p->data && x + p->dx >= 0 && y + p->dy >= 0 && x + p->dx < p->width && y + p->dy < p->height;
+}
 
 // NaN outside the part's window.
 static inline double plane_get(const plane *p, int x, int y)
@@ -67,6 +73,13 @@ typedef struct build {
     vec3 eye;
     mat3 normal_to_camera; // takes the file's normals to camera space
     bool normal_unorm;
+    double longest_normal; // as stored; longer ones are damaged
+
+    // What could not be used (defects.c): counted by rows on several threads.
+    atomic_size_t bad_positions; // a surface by its depth, but P is NaN, infinite or far off its pixel
+    atomic_size_t bad_normals;   // a surface whose N is zero, NaN, infinite or absurdly long
+    atomic_size_t bad_colours;   // a sample of a colour layer that is NaN or infinite
+    size_t colour_samples;       // of how many
 } build;
 
 // The channel of a role's component, data NULL when it is absent or was not loaded.
@@ -126,6 +139,9 @@ double normals_length(const build *b, int x, int y);
 // The normal of the surface through the neighbours' depths, facing the eye.
 vec3 normals_from_depth(const build *b, const float *depth, int x, int y);
 void normals_make(build *b);
+
+// defects.c: one warning for each kind of sample that could not be used, if it touches more than a thousandth of the pixels.
+void defects_warn(build *b);
 
 // coverage.c, colours.c
 bool coverage_make(build *b);

@@ -14,6 +14,7 @@ typedef struct job {
     bool unit;      // clamp to 0..1
     float *to;
     int width;
+    atomic_size_t *bad; // counts samples that are NaN or infinite
 } job;
 
 static float tamed(double v, bool unit)
@@ -29,18 +30,25 @@ static bool convert_row(void *context, size_t row, int worker)
     (void)worker;
     const job *j = context;
     const size_t step = (size_t)j->components;
+    size_t bad = 0;
     for (int c = 0; c < j->components; c++) {
         const plane from = j->from[c];
         float *to = j->to + row * (size_t)j->width * step + (size_t)c;
-        for (int x = 0; x < j->width; x++, to += step)
-            *to = from.data ? tamed(plane_get(&from, x, (int)row), j->unit) : j->fill[c];
+        for (int x = 0; x < j->width; x++, to += step) {
+            double v = from.data ? plane_get(&from, x, (int)row) : (double)j->fill[c];
+            bad += !isfinite(v) && plane_holds(&from, x, (int)row);
+            *to = tamed(v, j->unit && from.data);
+        }
     }
+    if (bad) atomic_fetch_add(j->bad, bad);
     return true;
 }
 
 static bool convert(build *b, job *j, float **out)
 {
     j->width = b->g->width;
+    j->bad = &b->bad_colours;
+    for (int c = 0; c < j->components; c++) b->colour_samples += j->from[c].data ? (size_t)b->g->width * (size_t)b->g->height : 0;
     j->to = *out = mem_pixels((size_t)b->g->width * (size_t)b->g->height * (size_t)j->components, sizeof **out, b->e);
     return *out && threads_for(b->options->threads, (size_t)b->g->height, convert_row, j);
 }

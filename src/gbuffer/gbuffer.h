@@ -54,9 +54,10 @@ typedef struct gbuffer {
     int evidence_count;
 } gbuffer;
 
-// Normals keep the orientation they are stored with, unless they point away from the eye by more than 6 degrees past the
-// silhouette and away from the surface the depths form: the back of a double-sided surface, turned towards the eye. So
-// interpolated and bumped normals may face away slightly (dot(n, ray) <= 0.1) or, agreeing with the surface, more.
+// Normals that all point into their surfaces are turned round. Otherwise they keep the orientation they are stored with, unless
+// they point away from the eye by more than 6 degrees past the silhouette and away from the surface the depths form, or by less
+// but against that surface: the back of a double-sided surface, turned towards the eye. So interpolated and bumped normals may
+// face away slightly (dot(n, ray) <= 0.1) or, agreeing with the surface, more.
 //
 // Coverage is 1 away from the background. Within one pixel (3 x 3) of it, it is alpha where alpha varies over the picture, else
 // the length of the normal where the renderer averages normals, else whether there is a surface. A pixel with coverage > 0 and
@@ -64,11 +65,12 @@ typedef struct gbuffer {
 // is the averaged one, renormalised: a later pass fills its layers from the nearest valid neighbour with a similar normal.
 //
 // Depth is P's camera-space z. Where P was sampled more than 0.02 pixels off its pixel's centre it is instead where the centre's
-// ray meets the plane (P, N), unless that plane is seen at a grazing angle (cosine below 0.1) or the result leaves the range of
-// the 3 x 3 neighbours' depths by more than half of it. A P further off than 3 pixels (and 10 times the median) is not believed:
-// the depth channel's value counts if it is known what that is, else P's own z if a neighbour's lies within 2 %, else there is no
-// surface. Where P is coarser than the depth channel by a factor of 16 (half floats, a world far from its origin), z comes from
-// that.
+// ray meets the plane (P, N), unless that plane is seen at a grazing angle (cosine below 0.01; below 0.1 where the depths
+// form another surface) or the result leaves the range of the 3 x 3 neighbours' depths (perspective: their inverses) by more than
+// half of it. A P further off than 3 pixels (and 10 times
+// the median) is not believed: the depth channel's value counts if it is known what that is, else P's own z if a neighbour's lies
+// within 2 %, else there is no surface. Where P is coarser than the depth channel by a factor of 16 (half floats, a world far
+// from its origin), z comes from that.
 //
 // Builds the frame from loaded channels. Validity from position and depth (finite, depth > 0, below the background value, not
 // P = 0 with a background depth), never from |N|. Works in double and subtracts the camera before anything becomes float.

@@ -113,6 +113,7 @@ typedef struct reading {
     const char *name;
     bool from_header; // then to_camera is the header's rotation, its axes read so that the normals fit
     bool inverse;     // and the matrix is the inverse of what the row says
+    bool inwards;     // and the normals point into the surface
     double score;     // mean cosine between the normals read so and those of the surface
 } reading;
 
@@ -138,6 +139,14 @@ static void gather(build *b, evidence *v)
         v->stored[v->count] = n, v->surface[v->count++] = normals_from_depth(b, b->raw, x, y);
     }
     v->may_be_unorm = v->may_be_unorm && any;
+}
+
+// Normals need not have unit length, but they have about one length: far beyond it lies what was never a normal.
+static double longest(const evidence *v)
+{
+    double lengths[NORMAL_SAMPLES];
+    for (size_t i = 0; i < v->count; i++) lengths[i] = v3_length(v->stored[i]);
+    return 1000.0 * solve_median(lengths, v->count);
 }
 
 static double score(const evidence *v, const reading *r)
@@ -171,7 +180,11 @@ static void try_header(const build *b, const evidence *v, bool unorm, double fir
         for (int k = 0; k < 48; k++) {
             mat3 s = {{{0}}};
             for (int row = 0; row < 3; row++) s.m[row][orders[k / 8][row]] = k >> row & 1 ? -1.0 : 1.0;
-            reading r = {m3_mul(s, both[inverse]), unorm, "world", true, inverse == 1, 0.0};
+            reading r = {.to_camera = m3_mul(s, both[inverse]),
+                         .unorm = unorm,
+                         .name = "world",
+                         .from_header = true,
+                         .inverse = inverse == 1};
             try_reading(v, r, first, best);
         }
 }
@@ -198,6 +211,9 @@ static reading choose_reading(const build *b, const evidence *v)
             reading r = list[i];
             r.unorm = u == 1;
             if (there[i]) try_reading(v, r, first, &best);
+            r.to_camera = m3_mul(signs(-1, -1, -1), r.to_camera); // pointing inwards
+            r.inwards = true;
+            if (there[i]) try_reading(v, r, first, &best);
         }
         if (b->has_header_pose && best.score < 0.9) try_header(b, v, u == 1, first, &best);
     }
@@ -209,7 +225,8 @@ static reading choose_reading(const build *b, const evidence *v)
 static void take_pose(build *b, const reading *r)
 {
     if (!b->has_header_pose) return;
-    b->world_from_camera = r->from_header ? m3_transpose(r->to_camera) : m3_mul(b->pose.axes, b->pose.from_ours);
+    const mat3 outwards = r->inwards ? m3_mul(signs(-1, -1, -1), r->to_camera) : r->to_camera;
+    b->world_from_camera = r->from_header ? m3_transpose(outwards) : m3_mul(b->pose.axes, b->pose.from_ours);
     b->eye = r->from_header && r->inverse ? b->pose.inverse_eye : b->pose.eye;
     build_note(b, "the camera's place in the world is the header's%s",
                r->from_header ? ", and the normals agree" : ", unchecked");
@@ -225,6 +242,7 @@ bool measure_normals(build *b)
     done = v != NULL;
     if (!done) goto out;
     gather(b, v);
+    b->longest_normal = v->count ? longest(v) : INFINITY;
     best = choose_reading(b, v);
     b->normal_to_camera = best.to_camera, b->normal_unorm = best.unorm;
     if (best.score < 0.4) {
@@ -235,8 +253,8 @@ bool measure_normals(build *b)
         best.from_header = false;
         goto out;
     }
-    build_note(b, "normals: %s space%s, mean cosine with the surface %.3f", best.name, best.unorm ? ", stored as 0..1" : "",
-               best.score);
+    build_note(b, "normals: %s space%s%s, mean cosine with the surface %.3f", best.name, best.unorm ? ", stored as 0..1" : "",
+               best.inwards ? ", pointing inwards" : "", best.score);
 out:
     if (done) take_pose(b, &best);
     free(v);

@@ -4,6 +4,8 @@
 // A normal this far (cosine) beyond the silhouette is still a shading normal's doing; further, the surface is seen from its back,
 // unless the surface itself agrees with the normal.
 static const double facing_away = 0.1;
+// At the silhouette itself only a normal that is the surface's turned round is seen from its back.
+static const double opposite = -0.5;
 
 static vec3 stored(const build *b, int x, int y)
 {
@@ -20,6 +22,7 @@ bool normals_read(const build *b, int x, int y, vec3 *n)
 {
     if (!b->has_normal) return false;
     vec3 v = stored(b, x, y);
+    if (v3_length(v) > b->longest_normal) return false;
     if (b->normal_unorm) v = v3(2.0 * v.x - 1.0, 2.0 * v.y - 1.0, 2.0 * v.z - 1.0);
     *n = v3_normalize(m3_apply(b->normal_to_camera, v));
     return v3_dot(*n, *n) > 0.5;
@@ -70,13 +73,18 @@ vec3 normals_from_depth(const build *b, const float *depth, int x, int y)
     return v3_dot(n, ray) > 0.0 ? v3_scale(n, -1.0) : n;
 }
 
-static vec3 normal_of(const build *b, int x, int y)
+static vec3 normal_of(build *b, int x, int y)
 {
     vec3 n;
-    if (!normals_read(b, x, y, &n)) return normals_from_depth(b, b->g->depth, x, y);
+    if (!normals_read(b, x, y, &n)) {
+        if (b->has_normal) atomic_fetch_add(&b->bad_normals, 1);
+        return normals_from_depth(b, b->g->depth, x, y);
+    }
     vec3 ray = v3_normalize(build_ray(&b->g->camera, x, y));
-    if (v3_dot(n, ray) <= facing_away) return n;
-    return v3_dot(n, normals_from_depth(b, b->g->depth, x, y)) < 0.0 ? v3_scale(n, -1.0) : n;
+    double away = v3_dot(n, ray);
+    if (away <= 0.0) return n;
+    double agrees = v3_dot(n, normals_from_depth(b, b->g->depth, x, y));
+    return agrees < (away <= facing_away ? opposite : 0.0) ? v3_scale(n, -1.0) : n;
 }
 
 static void make_row(build *b, int y)

@@ -6,7 +6,8 @@
 #include "gbuffer/camera_solve.h"
 
 static const double on_ray = 0.02;     // pixels: nearer than this to its own centre, P stays as it is
-static const double grazing = 0.1;     // cosine between ray and plane below which the plane says too little about depth
+static const double grazing = 0.01;    // cosine between ray and plane below which the plane says too little about depth
+static const double bump = 0.1;        // and below which a shading normal is believed only if the surface lies so too
 static const double same_depth = 0.02; // relative
 
 // Z as planar depth at a pixel. The caller has checked that there is a depth.
@@ -89,24 +90,28 @@ bool positions_raw(build *b)
     return true;
 }
 
-// Depths of the neighbours' surfaces: a surface moves by less than a pixel, so its depth stays within their range, give or take
-// half of it. Beyond, an edge (or a shading normal that is not the surface's) forbids the move.
+// Depths of the neighbours' surfaces, as what is linear across a plane's picture: a surface moves by less than a pixel, so it
+// stays within their range, or at a frame's border beyond it by no more than that. Beyond, an edge (or a shading normal that is
+// not the surface's) forbids the move.
 static bool neighbours_allow(const build *b, int x, int y, double z)
 {
-    double low = INFINITY, high = -INFINITY;
+    bool inverse = b->g->camera.kind == CAMERA_PERSPECTIVE;
+    double low = INFINITY, high = -INFINITY, at = inverse ? 1.0 / z : z;
     for (int v = y - 1; v <= y + 1; v++)
         for (int u = x - 1; u <= x + 1; u++) {
             if (u < 0 || v < 0 || u >= b->g->width || v >= b->g->height) continue;
             double d = (double)b->raw[build_index(b, u, v)];
-            if (d > 0.0) low = fmin(low, d), high = fmax(high, d);
+            if (d > 0.0) low = fmin(low, inverse ? 1.0 / d : d), high = fmax(high, inverse ? 1.0 / d : d);
         }
-    double slack = 0.5 * (high - low) + 1e-6 * high;
-    return z >= low - slack && z <= high + slack;
+    bool border = x == 0 || y == 0 || x == b->g->width - 1 || y == b->g->height - 1;
+    double slack = (border ? 1.0 : 0.5) * (high - low) + 1e-6 * high;
+    return at >= low - slack && at <= high + slack;
 }
 
 // A position far from its pixel: the depth channel's word if it is known what that is, else only if a neighbour lies close.
-static double depth_of_stray(const build *b, int x, int y)
+static double depth_of_stray(build *b, int x, int y)
 {
+    atomic_fetch_add(&b->bad_positions, 1);
     if (b->depth_measured) return depth_from_channel(b, x, y);
     static const int step[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
     double z = (double)b->raw[build_index(b, x, y)];
@@ -120,7 +125,7 @@ static double depth_of_stray(const build *b, int x, int y)
 }
 
 // *moved: the plane through P was followed to the pixel's own ray.
-static double final_depth(const build *b, int x, int y, bool *moved)
+static double final_depth(build *b, int x, int y, bool *moved)
 {
     double z = (double)b->raw[build_index(b, x, y)];
     *moved = false;
@@ -133,6 +138,8 @@ static double final_depth(const build *b, int x, int y, bool *moved)
     if (!normals_read(b, x, y, &n)) n = normals_from_depth(b, b->raw, x, y);
     double cosine = v3_dot(n, d);
     if (fabs(cosine) < grazing * v3_length(d)) return z;
+    if (fabs(cosine) < bump * v3_length(d) && fabs(v3_dot(normals_from_depth(b, b->raw, x, y), d)) > 2.0 * bump * v3_length(d))
+        return z;
     // Perspective: the ray starts at the eye. Orthographic: at the pixel's place on the plane z = 0.
     vec3 start = build_point(&b->g->camera, x, y, 0.0);
     double there = v3_dot(n, v3_sub(p, start)) / cosine;

@@ -15,12 +15,13 @@ static bool depth_good(const build *b, double z)
     return b->depth.type != SAMPLE_HALF || z < largest_half;
 }
 
-static surface classify(const build *b, int x, int y)
+static surface classify(build *b, int x, int y)
 {
     bool good = !b->has_depth || depth_good(b, plane_get(&b->depth, x, y));
     if (!b->has_position) return good ? SURFACE_YES : SURFACE_NONE;
     vec3 p = build_position(b, x, y);
     double most = fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
+    if (b->has_depth && good && !v3_finite(p)) atomic_fetch_add(&b->bad_positions, 1);
     if (!good || !v3_finite(p) || most >= far_position) return SURFACE_NONE;
     if (most > 0.0) return SURFACE_YES;
     return b->has_depth ? SURFACE_ORIGIN : SURFACE_NONE;
@@ -63,6 +64,7 @@ bool validity_classify(build *b)
     }
     free(kept);
     b->candidates = without;
+    atomic_store(&b->bad_positions, 0); // they were background
     log_warn(b->log, "depth-background",
              "the depth channel calls %zu of %zu pixels with a position background; it is ignored (--depth names another)",
              without - with_depth, without);

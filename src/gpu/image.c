@@ -33,7 +33,11 @@ bool gpu_image_make(gpu *g, gpu_image *image, GLenum format, int width, int heig
     if (code == GL_NO_ERROR) return true;
     gpu_image_free(image);
     return err_set(e, code == GL_OUT_OF_MEMORY ? ERR_MEMORY : ERR_GL, NULL, NULL,
-                   "the GL device cannot hold another image of %d x %d pixels (GL error 0x%04x)", width, height, code);
+                   code == GL_OUT_OF_MEMORY
+                       ? "the GL device is out of memory: no room for an image of %d x %d pixels; choose another --device or a "
+                         "smaller frame"
+                       : "the GL device cannot make an image of %d x %d pixels (GL error 0x%04x)",
+                   width, height, code);
 }
 
 void gpu_image_free(gpu_image *image)
