@@ -37,7 +37,8 @@ bool core_log_report(core_log *log, exr_result_t code, error_code kind, const ch
     pthread_mutex_lock(&log->lock);
     log->armed = false;
     const char *text = log->text[0] ? log->text : exr_get_default_error_message(code);
-    if (code == EXR_ERR_OUT_OF_MEMORY)
+    // The library's header parser says that memory ran out and then returns another code.
+    if (code == EXR_ERR_OUT_OF_MEMORY || strstr(text, exr_get_default_error_message(EXR_ERR_OUT_OF_MEMORY)))
         err_set(e, ERR_MEMORY, path, NULL, "out of memory; try fewer threads or frames in flight");
     else
         err_set(e, kind, path, NULL, "%s (%s)", what, text);

@@ -164,7 +164,7 @@ fi
 
 # --- memory: the n-th allocation fails ---
 memory=0 n=1 step=1
-[ "${SSDO_HARD-}" = whole ] || step=37
+[ "${SSDO_HARD-}" = whole ] || step=17
 while :; do
     rm -f "$dir/out.exr"
     SSDO_FAIL_ALLOC=$n "$SSDO" $args --layers occlusion,radiance -o "$dir/out.exr" 2>"$dir/err" >/dev/null
