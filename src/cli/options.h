@@ -48,6 +48,7 @@ typedef struct options {
     const char *bounce; // none, arc, ssdo; NULL = the method's own where it has one
     double bounce_strength;
     int vpl_count;
+    const char *proxies; // spheres the camera does not see; may be a pattern
 
     const char *env;
     int env_up;        // 0 by renderer, 'y', 'z'

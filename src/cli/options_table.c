@@ -90,6 +90,8 @@ const option_row option_rows[] = {
     {.group = GROUP_ESTIMATOR, .name = "trace", .argument = "auto|embree|gpu", .kind = OPT_ENUM, .offset = FIELD(trace),
      .words = WORDS({"auto", 0}, {"embree", 1}, {"gpu", 2}), .fallback = "auto",
      .help = "What traces the rays of raytrace: Embree on the CPU, or a grid in a shader. Both give the same picture; auto is Embree where its module is installed."},
+    {.group = GROUP_ESTIMATOR, .name = "proxies", .argument = "FILE.json", .kind = OPT_PATH, .offset = FIELD(proxies), .pixels = true,
+     .help = "Spheres in world space that stand for occluders the camera does not see; with a frame place (####) a file for each frame of a sequence."},
 
     {.group = GROUP_BOUNCE, .name = "bounce", .argument = "none|arc|ssdo|vpl", .kind = OPT_CHOICE, .offset = FIELD(bounce),
      .words = WORDS({"none", 0}, {"arc", 0}, {"ssdo", 0}, {"vpl", 0}), .pixels = true, .fallback = "the method's own where it has one",

@@ -10,6 +10,7 @@
 #include "gbuffer/gbuffer.h"
 #include "gpu/gpu.h"
 #include "light/environment.h"
+#include "light/proxies.h"
 #include "light/sun.h"
 #include "passes/planes.h"
 
@@ -86,6 +87,7 @@ typedef struct pass_context {
     const float *stored_sh[3]; // --from-sh: 3 a pixel, borrowed; NULL: s3ho measures
     const environment *env;    // borrowed; NULL without light
     const gbuffer *gb;         // borrowed: for what is found on the CPU
+    const proxy_set *proxies;  // borrowed; NULL or empty: none
     pass_sunless *sunless;     // borrowed, lives as long as the batch
     struct trace_scene *trace; // the same; for raytrace
     int threads;
@@ -149,6 +151,9 @@ bool pass_blur(pass_context *c, gpu_image *scalar0, gpu_image *scalar1, gpu_imag
 // visibility, radiance, bent and sh, as far as `small` has them; one more layer of four components.
 bool pass_upsample(pass_context *c, const pass_context *small, error *e);
 bool pass_upsample_colour(pass_context *c, const pass_context *small, const gpu_image *from, gpu_image *to, error *e);
+// Unseen spheres: they block before the looks, and add their bounce after the method's. Both do nothing without spheres.
+bool pass_proxies(pass_context *c, error *e);                 // occlusion, visibility, radiance, bent, sh: in place
+bool pass_proxies_bounce(pass_context *c, error *e);          // indirect: in place
 bool pass_look(pass_context *c, gpu_image *scalar, error *e); // scale and contrast, in place
 bool pass_irradiance(pass_context *c, error *e);              // occlusion -> radiance
 bool pass_edges(pass_context *c, error *e);                   // fills the layers of partly covered pixels

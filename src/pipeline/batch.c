@@ -201,6 +201,7 @@ static void filter_all(batch *b, bool read_here, bool write_here)
         if (read_here) read_one(b, i);
         slot *s = take(b, i, WAS_READ);
         if (!s->skipped && s->error.code == ERR_NONE) {
+            s->result.frame = s->frame;
             if (!locked_stopping(b) && frame_filter(b->j, &s->result, &s->error)) {
                 step(b, s);
             } else if (s->error.code == ERR_NONE) {

@@ -27,6 +27,7 @@ static bool run_method(pass_context *c, const plan *p, error *e)
 
 static bool finish_light(pass_context *c, const plan *p, error *e)
 {
+    if (!pass_proxies(c, e)) return false;
     if (p->look && !pass_look(c, &c->occlusion, e)) return false;
     if (p->look && c->visibility.id && !pass_look(c, &c->visibility, e)) return false;
     return !p->irradiance || pass_irradiance(c, e);
@@ -61,6 +62,7 @@ static bool run_half(pass_context *c, const plan *p, error *e)
     small.sunless = c->sunless;
     small.trace = c->trace;
     small.want_indirect = c->want_indirect;
+    small.proxies = c->proxies;
     small.threads = c->threads;
     small.want_radiance = c->want_radiance;
     small.want_visibility = c->want_visibility;
@@ -79,6 +81,8 @@ out:
 static bool run_passes(pass_context *c, const plan *p, error *e)
 {
     if (c->set.half ? !run_half(c, p, e) : !(run_method(c, p, e) && finish_light(c, p, e) && run_bounce(c, p, e))) return false;
+    // A beauty's light on unseen spheres is unknown: they send none.
+    if (p->bounce && c->set.relight && !pass_proxies_bounce(c, e)) return false;
     if (p->edges && c->coverage.id && !pass_edges(c, e)) return false;
     if (p->specular && !pass_specular(c, e)) return false;
     if (p->depthmask && !pass_depthmask(c, e)) return false;
@@ -175,6 +179,7 @@ bool filter_frame(job *j, frame_result *r, error *e)
     c.sunless = &j->sunless;
     c.trace = &j->trace;
     c.want_indirect = r->plan.bounce && bounce_of(&r->plan) == pass_raytrace_bounce;
+    c.proxies = &r->proxies;
     c.threads = j->threads;
     c.want_radiance = r->plan.want_radiance;
     c.want_bent = r->plan.want_bent;

@@ -4,9 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "base/mem.h"
 #include "base/threads.h"
+#include "cli/frames.h"
 #include "exr/write.h"
 #include "gbuffer/conventions.h"
 #include "pipeline/filter.h"
@@ -252,19 +254,35 @@ static pass_settings settings_of(const job *j, const frame_result *r, double rad
     };
 }
 
+// The frame's own spheres. Only a world camera can place them.
+static bool load_proxies(const job *j, frame_result *r, error *e)
+{
+    char path[4096];
+    if (!j->o->proxies) return true;
+    if (!r->gb.camera.has_world && r->gb.valid > 0)
+        return err_set(e, ERR_INPUT, r->file->path, NULL,
+                       "--proxies are in world space, and this frame's camera is not known there; give it with --camera FILE");
+    bool many = pattern_is(j->o->proxies) && access(j->o->proxies, R_OK) != 0;
+    if (many && !pattern_path(j->o->proxies, r->frame, path, sizeof path))
+        return err_set(e, ERR_USAGE, j->o->proxies, NULL, "--proxies: frame %d has no file name by this pattern", r->frame);
+    return proxies_load(many ? path : j->o->proxies, &r->proxies, e);
+}
+
 static bool filter_view(job *j, frame_result *r, double radius, error *e)
 {
     if (r->gb.valid == 0) log_warn(j->log, "empty", "%s: no pixel has a surface; the layers are neutral", r->file->path);
     r->set = settings_of(j, r, radius);
     describe(j, r);
-    return check_world(j, r, e) && prepare_light(j, r, e) && filter_frame(j, r, e);
+    return check_world(j, r, e) && load_proxies(j, r, e) && prepare_light(j, r, e) && filter_frame(j, r, e);
 }
 
 bool frame_filter(job *j, frame_result *r, error *e)
 {
     double radius = radius_of(j, &r->gb);
-    for (frame_result *v = r; v; v = v->next_view)
+    for (frame_result *v = r; v; v = v->next_view) {
+        v->frame = r->frame;
         if (!filter_view(j, v, radius, e)) return false;
+    }
     return true;
 }
 
@@ -319,6 +337,7 @@ static void free_view(frame_result *r)
 {
     for (int i = 0; i < LAYER_COUNT; i++) free(r->layers[i]);
     for (int k = 0; k < 3; k++) free(r->stored_sh[k]);
+    proxies_free(&r->proxies);
     gbuffer_free(&r->gb);
 }
 

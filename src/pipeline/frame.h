@@ -43,7 +43,9 @@ typedef struct frame_result {
     int timing_count;
     pass_upload uploads[PASS_MAX_UPLOADS];
     int upload_count;
-    plane_set planes; // that stood in for what the camera does not see; none where the method has no use for them
+    int frame;         // of a sequence; for --proxies
+    proxy_set proxies; // --proxies
+    plane_set planes;  // that stood in for what the camera does not see; none where the method has no use for them
     int tile_size, tiles, tiles_occupied; // tiles without a surface are not dispatched (but for the composite of a background)
     size_t clamped;                       // samples of ours that a half could not hold
     float *layers[LAYER_COUNT];           // width * height * channels, interleaved; NULL where not made

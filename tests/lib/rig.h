@@ -8,6 +8,7 @@ typedef struct rig {
     job job;
     options options;
     log_t log;
+    proxy_set proxies; // borrowed; none by default
 } rig;
 
 // The context and the environment. `env` may be NULL: no light; env->path NULL: the white environment.
