@@ -1,6 +1,6 @@
 #version 450 core
 // The tracer: rays against the mesh in a uniform grid, walked cell by cell (Amanatides and Woo 1987). Ray tile.x + i is item i.
-// Two grids (src/passes/grid.h), one after the other; the second looks no further than the first has found.
+// There are several grids (src/passes/grid.h), one after the other; each looks no further than those before have found.
 #include "include/frame.glsl"
 #include "include/rays.glsl"
 
@@ -9,7 +9,7 @@ struct Grid {
     vec4 cell;  // size of a cell
     ivec4 size; // in cells; w: its first offset. 0: no grid
 };
-layout(std140, binding = 1) uniform Params { Grid grids[2]; } params;
+layout(std140, binding = 1) uniform Params { Grid grids[6]; } params;
 
 layout(std430, binding = 0) readonly buffer Rays { Ray rays[]; };
 layout(std430, binding = 1) writeonly buffer Hits { Hit hits[]; };
@@ -72,7 +72,7 @@ void main() {
     }
     Hit best = Hit(r.origin.w, MISS);
     bool wants_any = r.direction.w != 0.0;
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 6; k++)
         if (params.grids[k].size.x > 0 && !(wants_any && best.triangle != MISS)) search_grid(params.grids[k], r, best);
     if (best.triangle == MISS) best.t = FAR;
     hits[i] = best;

@@ -7,8 +7,8 @@
 #include "base/mem.h"
 
 static const double DENSITY = 3.0;  // cells for a triangle
-static const double SHARE = 0.1;    // of the triangles may lie off the crowd on each side of it
-static const double LONELY = 4.0;   // a second grid, if the whole is as many times larger than the crowd
+static const double SHARE = 0.25;   // of the triangles may lie off the crowd on each side of it
+static const double LONELY = 4.0;   // a further grid, if the whole is as many times larger than the crowd
 static const double MARGIN = 1e-4f; // of a cell: what rounding in the shader may be off by
 
 typedef struct bounds {
@@ -50,6 +50,13 @@ static bounds bounds_of_level(const builder *b, int level)
     return all;
 }
 
+static size_t count_of_level(const builder *b, int level)
+{
+    size_t n = 0;
+    for (size_t t = 0; t < b->count; t++) n += b->level_of[t] == level;
+    return n;
+}
+
 static double diagonal(const bounds *b)
 {
     return sqrt(pow(b->high[0] - b->low[0], 2) + pow(b->high[1] - b->low[1], 2) + pow(b->high[2] - b->low[2], 2));
@@ -61,16 +68,17 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Where most triangles are: between two quantiles of their middles, with as much again around it.
-static bounds crowd(const builder *b)
+// Where most of a level's triangles are: between two quantiles of their middles, with as much again around it.
+static bounds crowd(const builder *b, int level)
 {
     enum { MOST = 4096 };
     double middle[MOST];
     bounds box = {{0}, {0}};
-    size_t stride = b->count / MOST + 1;
+    size_t stride = count_of_level(b, level) / MOST + 1;
     for (int k = 0; k < 3; k++) {
-        size_t n = 0;
-        for (size_t t = 0; t < b->count && n < MOST; t += stride) {
+        size_t n = 0, seen = 0;
+        for (size_t t = 0; t < b->count && n < MOST; t++) {
+            if (b->level_of[t] != level || seen++ % stride) continue;
             bounds o = bounds_of(b, t);
             middle[n++] = 0.5 * (o.low[k] + o.high[k]);
         }
@@ -84,22 +92,25 @@ static bounds crowd(const builder *b)
     return box;
 }
 
-static void choose_levels(builder *b)
+// What does not fit into the level's crowd goes to the next. False if nothing does.
+static bool split_level(builder *b, int level)
 {
-    bounds whole = bounds_of_level(b, 0), box = crowd(b);
-    if (!(diagonal(&whole) > LONELY * diagonal(&box))) return;
+    if (count_of_level(b, level) == 0) return false;
+    bounds whole = bounds_of_level(b, level), box = crowd(b, level);
+    if (!(diagonal(&whole) > LONELY * diagonal(&box))) return false;
     for (size_t t = 0; t < b->count; t++) {
+        if (b->level_of[t] != level) continue;
         bounds o = bounds_of(b, t);
         for (int k = 0; k < 3; k++)
-            if (o.low[k] < box.low[k] || o.high[k] > box.high[k]) b->level_of[t] = 1;
+            if (o.low[k] < box.low[k] || o.high[k] > box.high[k]) b->level_of[t] = (unsigned char)(level + 1);
     }
+    return true;
 }
 
 static void size_level(builder *b, int level)
 {
     grid_level *l = &b->g->level[level];
-    size_t n = 0;
-    for (size_t t = 0; t < b->count; t++) n += b->level_of[t] == level;
+    size_t n = count_of_level(b, level);
     if (n == 0) return;
     bounds box = bounds_of_level(b, level);
     double least = 1e-3 * diagonal(&box), side[3], volume = 1.0;
@@ -185,7 +196,7 @@ bool grid_make(const float *vertices, const uint32_t *triangles, size_t triangle
     builder b = {vertices, triangles, triangle_count, mem_zero(triangle_count, 1, e), out};
     bool ok = false;
     if (!b.level_of) goto out;
-    choose_levels(&b);
+    for (int level = 0; level + 1 < GRID_LEVELS && split_level(&b, level);) level++;
     for (int level = 0; level < GRID_LEVELS; level++) size_level(&b, level);
     out->offsets = mem_zero(out->offset_count + 1, sizeof *out->offsets, e);
     if (!out->offsets) goto out;

@@ -1,8 +1,8 @@
 // A uniform grid over triangles, as the shader trace_grid.comp walks it.
 //
 // Scenes often stand on a ground that reaches the horizon, or have something small far away, and one grid around all of that
-// would have everything of interest in one cell. So there may be two grids: one around the crowd, one around the rest; a ray
-// walks both.
+// would have everything of interest in one cell. So there may be several: one around the crowd, the next around the crowd of
+// what is left, and so on; a ray walks them all.
 #ifndef SSDO_PASSES_GRID_H
 #define SSDO_PASSES_GRID_H
 
@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 
-enum { GRID_LEVELS = 2, GRID_SIDE = 256 };
+enum { GRID_LEVELS = 6, GRID_SIDE = 256 };
 
 // Cell (x, y, z) of a level is offset first + (z * size[1] + y) * size[0] + x; its triangles are items[offsets[i]] up to
 // items[offsets[i + 1]], end exclusive.

@@ -170,6 +170,7 @@ static bool settle_points(trace_run *r, error *e)
         bind_rays(&r->rays, &r->hits, &r->gains);
         if (!run_step(r, "trace_points.comp", "SETTLE 1\n", first, e)) return false;
     }
+    trace_longer_rays(r->s);
     double share = r->pixel_count ? (double)found / (double)r->pixel_count : 1.0;
     log_info(r->c->log, "mesh: %.2f %% of the picture's points lie on it", 100.0 * share);
     if (share < WRONG_MESH)

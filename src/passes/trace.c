@@ -8,8 +8,8 @@
 #include "base/mem.h"
 #include "gbuffer/mesh.h"
 
-enum { FIRST_CHUNK = 1024, LARGEST_CHUNK = 1 << 20 };
-static const double SHORT_MS = 10.0, LONG_MS = 25.0; // a dispatch should take this long: below what any watchdog minds
+enum { FIRST_CHUNK = 1024, SMALLEST_CHUNK = 64, LARGEST_CHUNK = 1 << 20 };
+static const double WANTED_MS = 15.0; // of a dispatch: far below what any watchdog minds
 
 // ---- opening
 
@@ -156,6 +156,13 @@ static double milliseconds(void)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
+// At most twice as many rays at a time: the next ones may be longer.
+static size_t next_chunk(size_t n, double took)
+{
+    double chunk = (double)n * fmin(2.0, WANTED_MS / fmax(took, 1e-3));
+    return chunk < SMALLEST_CHUNK ? SMALLEST_CHUNK : chunk > LARGEST_CHUNK ? LARGEST_CHUNK : (size_t)chunk;
+}
+
 static bool send_to_grid(trace_scene *s, gpu *g, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e)
 {
     GLuint program = gpu_program(g, "trace_grid.comp", NULL, e);
@@ -175,12 +182,13 @@ static bool send_to_grid(trace_scene *s, gpu *g, const gpu_buffer *rays, gpu_buf
         glDispatchCompute((GLuint)(n + 63) / 64, 1, 1);
         glFinish();
         double took = milliseconds() - start;
-        if (took > LONG_MS && s->chunk > 64) s->chunk /= 2;
-        if (took < SHORT_MS && n == s->chunk && s->chunk < LARGEST_CHUNK) s->chunk *= 2;
+        if (n == s->chunk || took > WANTED_MS) s->chunk = next_chunk(n, took);
     }
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     return true;
 }
+
+void trace_longer_rays(trace_scene *s) { s->chunk = FIRST_CHUNK; }
 
 bool trace_send(trace_scene *s, gpu *g, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e)
 {

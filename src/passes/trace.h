@@ -37,4 +37,7 @@ void trace_scene_close(trace_scene *s);
 // Fills hits[0 .. count - 1] with what rays[0 .. count - 1] meet (plugin/trace_abi.h's layouts). Waits for the result.
 bool trace_send(trace_scene *s, gpu *g, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e);
 
+// Says that the next rays are longer than the last ones, so that the grid begins with few of them again.
+void trace_longer_rays(trace_scene *s);
+
 #endif
