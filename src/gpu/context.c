@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gpu/cache.h"
 #include "gpu/choose.h"
 #include "gpu/gpu.h"
 #include "gpu/internal.h"
@@ -151,6 +152,7 @@ static bool open_first(gpu *g, EGLDeviceEXT *devices, int count)
 bool gpu_open(gpu *g, int device, log_t *log, error *e)
 {
     *g = (gpu){0};
+    cache_point_mesa();
     if (!have_egl())
         return err_set(e, ERR_GL, NULL, NULL,
                        "libEGL.so.1 cannot be loaded; install a GL driver (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri)");

@@ -24,6 +24,7 @@ typedef struct gpu {
     GLuint framebuffer, vertex_array; // of gpu_draw_tiles; 0 before the first
     gpu_program_entry *programs;
     int program_count;
+    int programs_compiled, programs_cached; // of program_count: made from source, or taken from the cache of an earlier run
 } gpu;
 
 // One EGL device as --list-devices shows it.

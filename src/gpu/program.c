@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "gpu/cache.h"
 #include "gpu/gpu.h"
 #include "gpu/internal.h"
 #include "gpu/shaders.h"
@@ -141,6 +142,7 @@ static GLuint compile(const splice *s, const char *name, error *e)
                                        attach(program, GL_FRAGMENT_SHADER, s->text, message, sizeof message)
                                  : attach(program, GL_COMPUTE_SHADER, s->text, message, sizeof message);
     if (ok) {
+        glProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
         glLinkProgram(program);
         glGetProgramiv(program, GL_LINK_STATUS, &ok);
         if (!ok) glGetProgramInfoLog(program, sizeof message, NULL, message);
@@ -154,6 +156,22 @@ static GLuint compile(const splice *s, const char *name, error *e)
     return 0;
 }
 
+// From the cache, else compiled and put there.
+static GLuint fetch(gpu *g, const splice *s, const char *name, error *e)
+{
+    GLuint program = glCreateProgram();
+    if (cache_load(g, s->text, program)) {
+        g->programs_cached++;
+        return program;
+    }
+    glDeleteProgram(program);
+    program = compile(s, name, e);
+    if (!program) return 0;
+    g->programs_compiled++;
+    cache_store(g, s->text, program);
+    return program;
+}
+
 GLuint gpu_program(gpu *g, const char *name, const char *defines, error *e)
 {
     char key[512];
@@ -161,7 +179,7 @@ GLuint gpu_program(gpu *g, const char *name, const char *defines, error *e)
     for (int i = 0; i < g->program_count; i++)
         if (strcmp(g->programs[i].key, key) == 0) return g->programs[i].id;
     splice s = {0};
-    GLuint id = splice_file(&s, name, defines ? defines : "", e) ? compile(&s, name, e) : 0;
+    GLuint id = splice_file(&s, name, defines ? defines : "", e) ? fetch(g, &s, name, e) : 0;
     for (int i = 0; i < s.file_count; i++) {
         free(s.loaded[i]);
         if (i > 0) free((char *)s.files[i]);

@@ -114,6 +114,15 @@ static json_object *uploads_of(const job *j, const frame_result *r)
     return list;
 }
 
+// So far in this run: how many shader programs were made from source, and how many an earlier run had left in the cache.
+static json_object *programs_of(const job *j)
+{
+    json_object *o = json_object_new_object();
+    put(o, "compiled", json_object_new_int(j->g.programs_compiled));
+    put(o, "from_cache", json_object_new_int(j->g.programs_cached));
+    return o;
+}
+
 static json_object *tiles_of(const frame_result *r)
 {
     json_object *o = json_object_new_object();
@@ -193,6 +202,7 @@ static json_object *report_of(const job *j, const frame_result *r, const char *o
     put(o, "passes", passes_of(r));
     put(o, "times", times_of(r));
     put(o, "tiles", tiles_of(r));
+    put(o, "programs", programs_of(j));
     put(o, "uploads", uploads_of(j, r));
     put(o, "clamped_samples", json_object_new_int64((int64_t)r->clamped));
     for (int i = 0; i < j->log->warning_count; i++) json_object_array_add(warnings, json_object_new_string(j->log->warnings[i]));
