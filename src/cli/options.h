@@ -54,7 +54,7 @@ typedef struct options {
     int env_up;        // 0 by renderer, 'y', 'z'
     double env_rotate; // degrees
     double env_scale;
-    const char *env_colorspace, *ocio;
+    const char *env_colorspace, *albedo_colorspace, *ocio;
     const char *env_frame; // world, camera
     double env_lod;        // < 0 auto
     compose_mode mode;
@@ -80,6 +80,7 @@ typedef struct options {
     int radius_from; // frame that the automatic radius of a sequence is measured on; INT_MIN = the lowest existing
 
     const char *preview, *report;
+    const char *display, *view; // of the config, for previews; NULL = its defaults
     progress_form progress;
     int device; // -1 = first usable
     bool list_devices;

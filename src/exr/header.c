@@ -131,6 +131,14 @@ static exr_result_t put_ours(exr_context_t core, int index, const exr_out_attr *
         return exr_attr_set_string(core, index, a->name, a->string);
     case EXR_OUT_FLOAT:
         return exr_attr_set_float(core, index, a->name, (float)a->number);
+    case EXR_OUT_CHROMATICITIES: {
+        float xy[8];
+        for (int i = 0; i < 8; i++) xy[i] = (float)a->xy[i];
+        exr_attr_chromaticities_t value;
+        _Static_assert(sizeof value == sizeof xy, "red, green, blue, white");
+        memcpy(&value, xy, sizeof value);
+        return exr_attr_set_chromaticities(core, index, a->name, &value);
+    }
     case EXR_OUT_M44: {
         float m[16];
         for (int i = 0; i < 16; i++) m[i] = (float)a->m44[i / 4][i % 4];

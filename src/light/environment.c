@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "light/latlong.h"
 #include "light/mips.h"
+#include "light/primaries.h"
 #include "light/sh.h"
 #include "plugin/colour.h"
 
@@ -92,6 +93,22 @@ bool environment_prepare(const float *rgb, int width, int height, const env_opti
     return true;
 }
 
+// Only where both files say what their primaries are: the format's default, Rec. 709, is more often an omission than a statement.
+static void match_primaries(const env_options *options, const map_primaries *map, float *rgb, size_t texels, log_t *log)
+{
+    mat3 m;
+    if (!map->known || !options->primaries || primaries_equal(map->xy, options->primaries)) return;
+    if (!primaries_between(map->xy, options->primaries, &m)) {
+        log_warn(log, "primaries", "%s: its chromaticities are no primaries; the map is used as it is", options->path);
+        return;
+    }
+    for (size_t i = 0; i < texels; i++) {
+        vec3 v = m3_apply(m, v3((double)rgb[3 * i], (double)rgb[3 * i + 1], (double)rgb[3 * i + 2]));
+        rgb[3 * i] = (float)v.x, rgb[3 * i + 1] = (float)v.y, rgb[3 * i + 2] = (float)v.z;
+    }
+    log_info(log, "environment: converted to the picture's primaries (chromaticities of both files)");
+}
+
 bool environment_load(const env_options *options, environment *out, log_t *log, error *e)
 {
     static const float white[3] = {1, 1, 1};
@@ -103,9 +120,14 @@ bool environment_load(const env_options *options, environment *out, log_t *log, 
     }
     int width, height;
     float *rgb = NULL;
-    if (!latlong_read(options->path, options->threads, &width, &height, &rgb, log, e)) return false;
-    bool ok = !options->colorspace ||
-              colour_to_scene_linear(options->ocio, options->colorspace, rgb, (size_t)width * (size_t)height, e);
+    map_primaries primaries;
+    if (!latlong_read(options->path, options->threads, &width, &height, &rgb, &primaries, log, e)) return false;
+    size_t texels = (size_t)width * (size_t)height;
+    bool ok = true;
+    if (options->colorspace)
+        ok = colour_to_scene_linear(options->ocio, options->colorspace, rgb, texels, e);
+    else
+        match_primaries(options, &primaries, rgb, texels, log);
     ok = ok && environment_prepare(rgb, width, height, options, out, log, e);
     free(rgb);
     return ok;

@@ -26,10 +26,11 @@ enum { ENV_MAX_LEVELS = 16, ENV_MAX_SIZE = 32768 };
 typedef struct env_options {
     const char *path; // NULL: the white environment of radiance 1 (a 1x1 map)
     bool up_z;
-    double rotate_degrees;  // 0
-    const char *colorspace; // the map's, converted to scene linear by OpenColorIO; NULL: it is linear already
-    const char *ocio;       // config file; NULL: the one $OCIO names
-    double scale;           // 1; multiplies the white environment too
+    double rotate_degrees;   // 0
+    const char *colorspace;  // the map's, converted to scene linear by OpenColorIO; NULL: it is linear already
+    const double *primaries; // the picture's chromaticities; a map that has others is converted to them. NULL: as it is
+    const char *ocio;        // config file; NULL: the one $OCIO names
+    double scale;            // 1; multiplies the white environment too
     int threads;
 } env_options;
 

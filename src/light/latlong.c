@@ -121,7 +121,8 @@ static bool gather(const exr_part *part, const int channels[3], int *width, int 
     return true;
 }
 
-static bool read_exr(const char *path, int threads, int *width, int *height, float **rgb, log_t *log, error *e)
+static bool read_exr(const char *path, int threads, int *width, int *height, float **rgb, map_primaries *primaries, log_t *log,
+                     error *e)
 {
     bool ok = false;
     exr_file *file = NULL;
@@ -136,6 +137,7 @@ static bool read_exr(const char *path, int threads, int *width, int *height, flo
     for (int c = 0; c < 3; c++) part->channels[s.channels[c]].wanted = true;
     if (!exr_file_load(file, threads, e)) goto out;
     ok = gather(part, s.channels, width, height, rgb, e);
+    primaries->known = exr_attr_chromaticities(file, s.part, primaries->xy);
     if (ok)
         log_info(log, "environment: %s, %s %s %s, %d x %d", path, part->channels[s.channels[0]].name,
                  part->channels[s.channels[1]].name, part->channels[s.channels[2]].name, *width, *height);
@@ -161,10 +163,12 @@ static bool read_other(const char *path, int *width, int *height, float **rgb, e
     return out || err_set(e, ERR_INPUT, path, NULL, "the environment map has no channels; give a colour or grey image");
 }
 
-bool latlong_read(const char *path, int threads, int *width, int *height, float **rgb, log_t *log, error *e)
+bool latlong_read(const char *path, int threads, int *width, int *height, float **rgb, map_primaries *primaries, log_t *log,
+                  error *e)
 {
     bool exr = false;
     *rgb = NULL;
+    *primaries = (map_primaries){0};
     if (!is_exr(path, &exr, e)) return false;
-    return exr ? read_exr(path, threads, width, height, rgb, log, e) : read_other(path, width, height, rgb, e);
+    return exr ? read_exr(path, threads, width, height, rgb, primaries, log, e) : read_other(path, width, height, rgb, e);
 }

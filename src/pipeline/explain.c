@@ -10,6 +10,7 @@
 #include "pipeline/batch.h"
 #include "pipeline/frame.h"
 #include "pipeline/inputs.h"
+#include "plugin/colour.h"
 
 static void heading(FILE *to, const char *text) { fprintf(to, "\n%s\n", text); }
 
@@ -47,6 +48,22 @@ static void explain_evidence(const frame_result *r, FILE *to)
     fprintf(to, "  automatic radius: %g scene units\n", gbuffer_auto_radius(&r->gb));
     fprintf(to, "  world directions: %s\n",
             r->gb.camera.has_world ? "known" : "unknown (--env needs --env-frame camera or --camera)");
+}
+
+static void explain_colour(const options *o, const frame_result *r, FILE *to)
+{
+    double xy[8];
+    heading(to, "colour");
+    fprintf(to, "  beauty and emission are taken as scene-linear; the albedo %s%s\n",
+            o->albedo_colorspace ? "is converted from " : "too",
+            o->albedo_colorspace ? o->albedo_colorspace : " (--albedo-colorspace names another space)");
+    if (exr_attr_chromaticities(r->file, r->resolution.main_part, xy))
+        fprintf(to, "  primaries by the header: red %.4g %.4g, green %.4g %.4g, blue %.4g %.4g, white %.4g %.4g\n", xy[0], xy[1],
+                xy[2], xy[3], xy[4], xy[5], xy[6], xy[7]);
+    else
+        fprintf(to, "  the header does not say which primaries\n");
+    const char *config = colour_config(o->ocio);
+    fprintf(to, "  OpenColorIO config: %s\n", config ? config : "none (--ocio, $OCIO)");
 }
 
 static void explain_plan(const frame_result *r, FILE *to)
@@ -89,6 +106,7 @@ static bool explain_files(const options *o, const input_paths *in, FILE *to, err
         explain_roles(v, to);
         if (!ok) continue;
         explain_evidence(v, to);
+        explain_colour(o, v, to);
         explain_plan(v, to);
     }
     if (log.warning_count) heading(to, "warnings");

@@ -15,6 +15,7 @@
 #include "pipeline/output.h"
 #include "pipeline/stored.h"
 #include "pipeline/views.h"
+#include "plugin/colour.h"
 
 typedef struct stopwatch {
     double wall, cpu;
@@ -90,12 +91,27 @@ static bool resolve_view(const job *j, frame_result *r, error *e)
     return !r->plan.from_sh || stored_sh_want(j->o, r->file, r->view, e);
 }
 
+// The albedo as linear light; the channels pass through as they are. Beauty and emission are rendered light: linear already.
+static bool convert_albedo(const job *j, frame_result *r, error *e)
+{
+    if (!j->o->albedo_colorspace || !r->gb.albedo) return true;
+    size_t n = (size_t)r->gb.width * (size_t)r->gb.height;
+    float *rgb = mem_pixels(n, 3 * sizeof *rgb, e), *albedo = r->gb.albedo;
+    if (!rgb) return false;
+    for (size_t i = 0; i < n; i++) memcpy(rgb + 3 * i, albedo + 4 * i, 3 * sizeof *rgb);
+    bool ok = colour_to_scene_linear(j->o->ocio, j->o->albedo_colorspace, rgb, n, e);
+    for (size_t i = 0; ok && i < 3 * n; i++) albedo[i / 3 * 4 + i % 3] = isfinite(rgb[i]) ? rgb[i] : 0.0f;
+    free(rgb);
+    if (ok) log_info(j->log, "albedo: converted from %s to scene linear", j->o->albedo_colorspace);
+    return ok;
+}
+
 static bool build_view(const job *j, frame_result *r, error *e)
 {
     gbuffer_options g = {
         .need = r->plan.need, .camera_file = j->o->camera_file, .fov = j->o->fov, .ortho = j->o->ortho, .threads = j->threads};
     if (r->view) log_info(j->log, "view %s:", r->view);
-    return gbuffer_build(r->file, &r->resolution, &g, &r->gb, j->log, e) &&
+    return gbuffer_build(r->file, &r->resolution, &g, &r->gb, j->log, e) && convert_albedo(j, r, e) &&
            (!r->plan.from_sh || stored_sh_load(j->o, r->file, r->view, &r->gb, r->stored_sh, e));
 }
 
@@ -143,6 +159,7 @@ static bool env_up_z(const job *j, const frame_result *r) { return j->o->env_up 
 // The environment is prepared with the first frame, because its default up axis is the renderer's.
 static bool prepare_light(job *j, const frame_result *r, error *e)
 {
+    double primaries[8];
     if (!r->plan.light || j->env_loaded) return true;
     env_options eo = {.path = j->o->env,
                       .up_z = env_up_z(j, r),
@@ -150,6 +167,7 @@ static bool prepare_light(job *j, const frame_result *r, error *e)
                       .scale = j->o->env_scale,
                       .threads = j->threads,
                       .colorspace = j->o->env_colorspace,
+                      .primaries = exr_attr_chromaticities(r->file, r->resolution.main_part, primaries) ? primaries : NULL,
                       .ocio = j->o->ocio};
     if (!environment_load(&eo, &j->env, j->log, e)) return false;
     j->env_loaded = true;

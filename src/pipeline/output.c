@@ -9,7 +9,7 @@
 #include "exr/write.h"
 #include "pipeline/views.h"
 
-enum { MAX_OURS = LAYER_COUNT * 4 + 5, NAME_SIZE = 96, MAX_ATTRS = 10 };
+enum { MAX_OURS = LAYER_COUNT * 4 + 5, NAME_SIZE = 96, MAX_ATTRS = 12 };
 
 // Everything exr_write borrows for one view.
 typedef struct assembly {
@@ -177,6 +177,9 @@ static void add_attributes(assembly *a, const job *j, const frame_result *r)
     add_attr(a, "ssdo/method", EXR_OUT_STRING)->string = r->plan.method->name;
     snprintf(a->environment, sizeof a->environment, "%s", j->o->env ? base_name(j->o->env) : "white, radiance 1");
     if (r->plan.light) add_attr(a, "ssdo/environment", EXR_OUT_STRING)->string = a->environment;
+    // A part of our own copies nothing else from the input's.
+    exr_out_attr primaries = {.name = "chromaticities", .kind = EXR_OUT_CHROMATICITIES};
+    if (exr_attr_chromaticities(r->file, r->resolution.main_part, primaries.xy)) a->attrs[a->attr_count++] = primaries;
     add_attr(a, "ssdo/premult", EXR_OUT_STRING)->string =
         "composite: premultiplied; occlusion, visibility: ratios; radiance, indirect: per unit coverage";
 }

@@ -11,4 +11,11 @@
 // an OCIO config; NULL takes the one $OCIO names. ERR_INPUT names the config and, for an unknown space, those it has.
 bool colour_to_scene_linear(const char *config, const char *from, float *rgb, size_t n, error *e);
 
+// Converts n interleaved scene-linear RGB pixels in place to what the display shows under the view, encoded; NULL: the config's
+// default display, and that display's default view. ERR_INPUT names the config and, for an unknown name, those it has.
+bool colour_to_display(const char *config, const char *display, const char *view, float *rgb, size_t n, error *e);
+
+// The config that would be used: `config`, else what $OCIO names, else NULL.
+const char *colour_config(const char *config);
+
 #endif

@@ -7,4 +7,8 @@
 typedef int (*colour_to_linear_fn)(const char *config, const char *from, float *rgb, size_t n, char *message,
                                    size_t message_size);
 
+// display, view NULL: the config's default ones.
+typedef int (*colour_to_display_fn)(const char *config, const char *display, const char *view, float *rgb, size_t n,
+                                    char *message, size_t message_size);
+
 #endif

@@ -17,6 +17,32 @@ std::string known_spaces(const OCIO::ConstConfigRcPtr &config)
         list += std::string(i ? ", " : "") + config->getColorSpaceNameByIndex(i);
     return list;
 }
+
+std::string known_displays(const OCIO::ConstConfigRcPtr &config, const char *display)
+{
+    std::string list;
+    int n = display ? config->getNumViews(display) : config->getNumDisplays();
+    for (int i = 0; i < n && list.size() < 200; i++)
+        list += std::string(i ? ", " : "") + (display ? config->getView(display, i) : config->getDisplay(i));
+    return list;
+}
+
+bool has_view(const OCIO::ConstConfigRcPtr &config, const char *display, const char *view)
+{
+    for (int i = 0; i < config->getNumViews(display); i++)
+        if (std::string(config->getView(display, i)) == view) return true;
+    return false;
+}
+
+// In rows, because an image's width is a long but its strides are counted in bytes.
+void apply(const OCIO::ConstCPUProcessorRcPtr &cpu, float *rgb, size_t n)
+{
+    const size_t row = 1 << 20;
+    for (size_t at = 0; at < n; at += row) {
+        OCIO::PackedImageDesc image(rgb + 3 * at, static_cast<long>(n - at < row ? n - at : row), 1, 3);
+        cpu->apply(image);
+    }
+}
 } // namespace
 
 extern "C" __attribute__((visibility("default"))) int ssdo_colour_to_linear(const char *path, const char *from, float *rgb,
@@ -29,12 +55,34 @@ extern "C" __attribute__((visibility("default"))) int ssdo_colour_to_linear(cons
             return 0;
         }
         OCIO::ConstCPUProcessorRcPtr cpu = config->getProcessor(from, OCIO::ROLE_SCENE_LINEAR)->getDefaultCPUProcessor();
-        // In rows, because an image's width is a long but its strides are counted in bytes.
-        const size_t row = 1 << 20;
-        for (size_t at = 0; at < n; at += row) {
-            OCIO::PackedImageDesc image(rgb + 3 * at, static_cast<long>(n - at < row ? n - at : row), 1, 3);
-            cpu->apply(image);
+        apply(cpu, rgb, n);
+        return 1;
+    } catch (const std::exception &e) {
+        std::snprintf(message, size, "cannot be used as an OpenColorIO config: %s", e.what());
+    } catch (...) {
+        std::snprintf(message, size, "cannot be used as an OpenColorIO config");
+    }
+    return 0;
+}
+
+extern "C" __attribute__((visibility("default"))) int
+ssdo_colour_to_display(const char *path, const char *display, const char *view, float *rgb, size_t n, char *message, size_t size)
+{
+    try {
+        OCIO::ConstConfigRcPtr config = OCIO::Config::CreateFromFile(path);
+        if (!display) display = config->getDefaultDisplay();
+        if (config->getNumViews(display) == 0) {
+            std::snprintf(message, size, "has no display '%s'; it has %s", display, known_displays(config, nullptr).c_str());
+            return 0;
         }
+        if (!view) view = config->getDefaultView(display);
+        if (!has_view(config, display, view)) {
+            std::snprintf(message, size, "has no view '%s' for the display '%s'; it has %s", view, display,
+                          known_displays(config, display).c_str());
+            return 0;
+        }
+        apply(config->getProcessor(OCIO::ROLE_SCENE_LINEAR, display, view, OCIO::TRANSFORM_DIR_FORWARD)->getDefaultCPUProcessor(),
+              rgb, n);
         return 1;
     } catch (const std::exception &e) {
         std::snprintf(message, size, "cannot be used as an OpenColorIO config: %s", e.what());

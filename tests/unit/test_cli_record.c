@@ -65,7 +65,8 @@ static const char *const everything =
     "--env-frame camera --env-lod 2.5 --mode visibility --amount 0 --multiply all --depthmask-strength 2 --position 'View "
     "Layer.Position' --normal 'it'\\''s N' "
     "--depth Z "
-    "--albedo a --beauty b --roughness r --metallic m --emission e --view-layer 'A \"B\" $C' --depth-kind radial --albedo-kind "
+    "--albedo a --beauty b --roughness r --metallic m --emission e --view-layer 'A \"B\" $C' --depth-kind radial "
+    "--albedo-colorspace Cg --albedo-kind "
     "base "
     "--fov 39.6 --radius-from 12";
 

@@ -110,12 +110,12 @@ static void same_layers(const frame_result *a, const frame_result *b)
     }
 }
 
-static int channel_count(const exr_file *f, const char *view, const char *name)
+static int channel_count(const exr_file *f, const char *eye, const char *name)
 {
     int n = 0;
     for (int p = 0; p < f->part_count; p++)
         for (int c = 0; c < f->parts[p].channel_count; c++)
-            n += strcmp(f->parts[p].view, view) == 0 && strcmp(f->parts[p].channels[c].name, name) == 0;
+            n += strcmp(f->parts[p].view, eye) == 0 && strcmp(f->parts[p].channels[c].name, name) == 0;
     return n;
 }
 
@@ -182,6 +182,7 @@ static void one_eye_of_two(void **state)
     frame_free(&r);
     must(exr_file_open(out, &f, &e), &e);
     assert_int_equal(f->part_count, 2);
+    assert_string_equal(f->parts[0].view, "left");
     assert_int_equal(channel_count(f, "right", "occlusion.R"), 1);
     assert_int_equal(channel_count(f, "left", "occlusion.R"), 0);
     assert_int_equal(channel_count(f, "left", "P.X"), 1);
