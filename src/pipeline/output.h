@@ -13,9 +13,9 @@ bool output_check_names(const options *o, const exr_file *file, const plan *p, e
 bool output_keeps_chunks(const options *o, const exr_file *file, int part, const plan *p);
 
 // Writes the file. Of a stereo file each view is treated so: its parts keep their `view`, and our layers have the same names in
-// each. Parts of no filtered view pass through as they are. A single-part input stays single-part. Parts of a multi-part input are
-// merged into one where windows and names allow; otherwise they are kept as they are and our layers go into a part of their own,
-// named "ssdo".
+// each. Parts of no filtered view pass through as they are. A single-part input stays single-part. Parts of a multi-part input
+// are merged into one where windows and names allow; otherwise they are kept as they are and our layers go into a part of their
+// own, named "ssdo".
 bool output_write(const job *j, frame_result *r, const char *path, error *e);
 
 #endif
