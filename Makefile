@@ -58,7 +58,7 @@ help:
 	@echo 'make check-farm    a sequence by Slurm, Open Job Description and GNU parallel against one command'
 	@echo 'make check-hosts   our output in Blender, oiiotool, exrmultipart and ImageMagick'
 	@echo 'make bench    error against time of every method (bench-unseen: on scenes rendered afresh)'
-	@echo 'make bench-frame   cost of a whole frame beside copying its file'
+	@echo 'make bench-frame   cost of a whole frame beside copying its file (bench-frame-readme: into README.md)'
 	@echo 'make all | lint | format | install PREFIX= DESTDIR= | uninstall | clean'
 
 $(BIN): $(BUILD)/src/main.o $(BUILD)/libssdo.a
@@ -163,8 +163,14 @@ $(BUILD)/unseen/%/rendered:
 # What a whole frame costs beside copying its file: BUILD/bench/frame.md.
 .PHONY: bench-frame
 bench-frame: deps-bench
-	@$(MAKE) $(JOBS) --no-print-directory all $(BUILD)/tests/bench/make_input $(BUILD)/tests/bench/measure $(BUILD)/tests/bench/core_copy
+	@$(MAKE) $(JOBS) --no-print-directory all $(BUILD)/tests/bench/make_input $(BUILD)/tests/bench/measure $(BUILD)/tests/bench/core_copy \
+	    $(BUILD)/tests/bench/own_copy
 	@sh tests/bench/frame.sh $(BUILD) $(ROUNDS)
+
+# Puts the last bench-frame's tables into README.md, between the marks.
+.PHONY: bench-frame-readme
+bench-frame-readme:
+	@sh tests/bench/paste.sh $(BUILD)/bench/frame.md bench-frame README.md
 $(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(TESTLIB) $(BUILD)/libssdo.a
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
 

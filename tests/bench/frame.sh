@@ -1,30 +1,92 @@
 #!/bin/sh
 # frame.sh BUILD [ROUNDS]: what a whole frame costs beside copying the file (`make bench-frame`). Writes BUILD/bench/frame.md.
-# CPU is user + system of the process; commands run in turn, medians; ratios are to `oiiotool in.exr -o copy.exr`.
+# CPU is user + system of the process; commands run in turn, ROUNDS times, medians; ratios are to `oiiotool in.exr -o copy.exr`.
+# SIZE is the size of the ratios (1920x1080), BIG that of the cost per pixel (3840x2160; empty leaves it out), FRAMES the batch.
 set -eu
 build=$1
 rounds=${2:-3}
+size=${SIZE:-1920x1080}
+big=${BIG-3840x2160}
+frames=${FRAMES:-24}
 bin=$build/ssdo-filter
+tools=$build/tests/bench
 dir=$build/bench/frame
-mkdir -p "$dir"
-out=$build/bench/frame.md
 env=samples/sky_soft.exr
+mkdir -p "$dir/sequence"
+out=$build/bench/frame.md
+ratios=$dir/ratios
+
+input() { # WIDTHxHEIGHT: its path, made if need be
+    [ -e "$dir/$1.exr" ] || "$tools/make_input" "${1%x*}" "${1#*x}" "$dir/$1.exr" >&2
+    echo "$dir/$1.exr"
+}
+filter() { echo "$bin -q $in -o $dir/out.exr --env $env $*"; }
+rows() { # measure's lines as a table; the first is the yardstick
+    awk -F '\t' -v size="$1" 'NR == 1 { base = $2 } { printf "| %s | %s | %s | %s | %.2f | %s | %s |\n", size, $1, $2, $3, $2 / base, $4, $5 }' "$2"
+}
+cpu_of() { awk -F '\t' -v name="$2" '$1 == name { print $2 }' "$1"; }
+ratio() { # FILE NAME TARGET: a line of the second table
+    awk -F '\t' -v name="$2" -v target="$3" 'NR == 1 { base = $2 }
+        $1 == name { printf "| %s, CPU over oiiotool'"'"'s copy | %.2f | %s |\n", name, $2 / base, target }' "$1" >>"$ratios"
+}
+
+in=$(input "$size")
+: >"$ratios"
+# Once before all: a farm's machine has compiled the shaders before.
+$bin -q "$in" -o "$dir/out.exr" --env $env --quality draft
+"$tools/measure" "$rounds" \
+    "oiiotool copy" "oiiotool $in -o $dir/copy.exr" \
+    "OpenEXRCore read + write" "$tools/core_copy $in $dir/copy.exr >$dir/null" \
+    "cp" "cp $in $dir/copy.exr" \
+    "four layers, draft" "$(filter --quality draft)" \
+    "four layers, standard" "$(filter --quality standard)" \
+    "four layers, draft, multipart" "$(filter --quality draft --layout multipart)" \
+    "four layers, standard, multipart" "$(filter --quality standard --layout multipart)" \
+    "occlusion only, keep none, draft" "$(filter --quality draft --layers occlusion --keep none)" >"$dir/main.tsv"
+ratio "$dir/main.tsv" "four layers, draft" "1.0"
+ratio "$dir/main.tsv" "four layers, standard" "1.6"
+ratio "$dir/main.tsv" "four layers, draft, multipart" "0.7"
+ratio "$dir/main.tsv" "four layers, standard, multipart" "1.3"
+ratio "$dir/main.tsv" "occlusion only, keep none, draft" "0.6"
+
+# Decoding the input, encoding the new layers: ours over the library's default, in turn.
+$bin -q "$in" -o "$dir/layers.exr" --env $env --quality draft --keep none
+: >"$dir/codec"
+for i in $(seq "$rounds"); do
+    echo "$("$tools/own_copy" "$in" "$dir/copy.exr") $("$tools/core_copy" "$in" "$dir/copy.exr")" \
+        "$("$tools/own_copy" "$dir/layers.exr" "$dir/copy.exr") $("$tools/core_copy" "$dir/layers.exr" "$dir/copy.exr")" >>"$dir/codec"
+done
+median() { sort -n | awk '{ v[NR] = $1 } END { printf "%.2f", v[int((NR + 1) / 2)] }'; }
+echo "| decode of the input, CPU over the library's | $(awk '{ print $1 / $3 }' "$dir/codec" | median) | 0.5 |" >>"$ratios"
+echo "| encode of the new layers, CPU over the library's | $(awk '{ print $6 / $8 }' "$dir/codec" | median) | 0.3 |" >>"$ratios"
+
+# A batch: the same frame under many names.
+for i in $(seq "$frames"); do ln -sf "../$size.exr" "$dir/sequence/in.$(printf %04d "$i").exr"; done
+batch() { echo "$bin -q $dir/sequence/in.####.exr -o $dir/sequence/out.####.exr --env $env --quality draft --frames 1-$1"; }
+"$tools/measure" 1 "five" "$(batch 5)" "all" "$(batch "$frames")" >"$dir/batch.tsv"
+awk -F '\t' -v n="$frames" '$1 == "five" { peak = $5 }
+    $1 == "all" {
+        printf "| batch of %d, wall over CPU | %.2f | 0.6 |\n", n, $3 / $2
+        printf "| batch of %d, peak memory over that of 5 frames | %.2f | 1.0 |\n", n, $5 / peak
+    }' "$dir/batch.tsv" >>"$ratios"
+rm -f "$dir"/sequence/out.*
+
+if [ -n "$big" ]; then
+    in=$(input "$big")
+    "$tools/measure" 1 "oiiotool copy" "oiiotool $in -o $dir/copy.exr" "four layers, draft" "$(filter --quality draft)" >"$dir/big.tsv"
+    awk -v a="$(cpu_of "$dir/big.tsv" "four layers, draft")" -v b="$(cpu_of "$dir/main.tsv" "four layers, draft")" -v big="$big" -v size="$size" 'BEGIN {
+        split(big, p, "x"); split(size, q, "x")
+        printf "| CPU a pixel, %s over %s, draft | %.2f | 1.15 |\n", big, size, a / (p[1] * p[2]) / (b / (q[1] * q[2])) }' >>"$ratios"
+fi
+
 {
     echo "| size | command | CPU ms | wall ms | CPU, x oiiotool | CPU spread % | peak MiB |"
     echo "| --- | --- | ---: | ---: | ---: | ---: | ---: |"
+    rows "$size" "$dir/main.tsv"
+    if [ -n "$big" ]; then rows "$big" "$dir/big.tsv"; fi
+    echo
+    echo "| ratio | measured | target |"
+    echo "| --- | ---: | ---: |"
+    cat "$ratios"
 } >"$out"
-for size in ${SIZES:-960x540 1920x1080 3840x2160}; do
-    in=$dir/$size.exr
-    [ -e "$in" ] || "$build/tests/bench/make_input" "${size%x*}" "${size#*x}" "$in"
-    one() { echo "$bin -q $in -o $dir/out.exr --env $env $*"; }
-    "$build/tests/bench/measure" "$rounds" \
-        "oiiotool copy" "oiiotool $in -o $dir/copy.exr" \
-        "OpenEXRCore read + write" "$build/tests/bench/core_copy $in $dir/copy.exr" \
-        "cp" "cp $in $dir/copy.exr" \
-        "four layers, draft" "$(one --quality draft)" \
-        "four layers, standard" "$(one --quality standard)" \
-        "four layers, ssdo" "$(one --method ssdo)" \
-        "occlusion only, keep none, draft" "$(one --quality draft --layers occlusion --keep none)" |
-        awk -F '\t' -v size="$size" 'NR == 1 { base = $2 } { printf "| %s | %s | %s | %s | %.2f | %s | %s |\n", size, $1, $2, $3, $2 / base, $4, $5 }' >>"$out"
-done
 cat "$out"

@@ -1,0 +1,60 @@
+// own_copy IN.exr OUT.exr: reads all channels of a one-part file and writes them as the tool does, two threads. Prints the CPU
+// milliseconds of reading and of writing, beside core_copy's.
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "base/mem.h"
+#include "exr/write.h"
+
+static double cpu_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+static bool copy(const char *from, const char *to, double ms[2], error *e)
+{
+    exr_file *f = NULL;
+    exr_out_channel *channels = NULL;
+    bool ok = false;
+    double begun = cpu_ms();
+    if (!exr_file_open(from, &f, e)) return false;
+    exr_part *p = &f->parts[0];
+    for (int c = 0; c < p->channel_count; c++) p->channels[c].wanted = true;
+    channels = mem_zero((size_t)p->channel_count, sizeof *channels, e);
+    if (!channels || !exr_file_load(f, 2, e)) goto out;
+    ms[0] = cpu_ms() - begun;
+    for (int c = 0; c < p->channel_count; c++)
+        channels[c] = (exr_out_channel){p->channels[c].name, p->channels[c].type, p->channels[c].data};
+    exr_out_part part = {.data_window = p->data_window,
+                         .display_window = p->display_window,
+                         .pixel_aspect = p->pixel_aspect,
+                         .compression = p->compression,
+                         .channels = channels,
+                         .channel_count = p->channel_count,
+                         .attributes_from = f};
+    begun = cpu_ms();
+    ok = exr_write(to, &part, 1, 2, e);
+    ms[1] = cpu_ms() - begun;
+out:
+    free(channels);
+    exr_file_close(f);
+    return ok;
+}
+
+int main(int argc, char **argv)
+{
+    error e = {0};
+    double ms[2];
+    char text[1600];
+    if (argc != 3) return 2;
+    if (copy(argv[1], argv[2], ms, &e)) {
+        printf("%.1f %.1f\n", ms[0], ms[1]);
+        return 0;
+    }
+    err_format(&e, text, sizeof text);
+    fprintf(stderr, "own_copy: %s\n", text);
+    return 1;
+}
