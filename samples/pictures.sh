@@ -20,3 +20,16 @@ sheet() {
 
 sheet still sky_soft.exr 0.5 96x54+80+20
 sheet horizon sky_sun.exr 2 96x54+90+60
+
+# The bounce in the open box: arc, vpl, raytrace, and Cycles (the mean of its two renders).
+indirect() {
+    "$bin" -q samples/box.exr -o "$tmp/box.exr" --env samples/sky_soft.exr --radius 0.6 --layers indirect "$@"
+    oiiotool "$tmp/box.exr" --ch indirect.R,indirect.G,indirect.B -o "$tmp/panel.exr"
+}
+panel() { oiiotool "$tmp/panel.exr" --cut 404x254+38+6 --resize 303x0 --mulc 4 $encode -d uint8 -o "$tmp/$1.png"; }
+indirect --method arc && panel 1
+indirect --method arc --bounce vpl && panel 2
+indirect --method raytrace --mesh samples/box.obj --samples 256 && panel 3
+oiiotool samples/box.exr --ch ViewLayer.DiffInd.R,ViewLayer.DiffInd.G,ViewLayer.DiffInd.B samples/box_truth.exr \
+    --ch DiffInd.R,DiffInd.G,DiffInd.B --add --mulc 0.5 -o "$tmp/panel.exr" && panel 4
+oiiotool "$tmp/1.png" "$tmp/2.png" "$tmp/3.png" "$tmp/4.png" --mosaic:pad=6 2x2 -o "$out/box-bounce.png"

@@ -43,6 +43,10 @@ expect 4 "no/such/folder" "$sample" -o "$dir/no/such/folder/out.exr"
 expect 2 "--radius" "$sample" -o "$dir/out.exr" --radius tiny
 expect 2 "there is no layer" "$sample" -o "$dir/out.exr" --layers occlusoin
 expect 2 "there is no method" "$sample" -o "$dir/out.exr" --method magic
+expect 2 "--mesh" "$sample" -o "$dir/out.exr" --method raytrace
+expect 3 "no_mesh.obj" "$sample" -o "$dir/out.exr" --method raytrace --mesh no_mesh.obj
+expect 3 "no face" "$sample" -o "$dir/out.exr" --method raytrace --mesh "$dir/text.exr"
+expect 3 "of the picture's points" "$sample" -o "$dir/out.exr" --method raytrace --mesh samples/box.obj
 expect 2 "--frobnicate" "$sample" -o "$dir/out.exr" --frobnicate
 expect 3 "no_sky.exr" "$sample" -o "$dir/out.exr" --env no_sky.exr
 # A driver list that names nothing: no EGL on this machine, as far as the program can see.

@@ -25,13 +25,14 @@ typedef struct run {
 } run;
 
 // Filters the sample with its own radius and sky.
-static void run_sample(run *x, const sample *s)
+static void run_bounce(run *x, const sample *s, const char *bounce)
 {
     error e = {0};
     *x = (run){.s = *s};
     must(sample_load(&x->s, &e), &e);
     options_defaults(&x->o);
     snprintf(x->output, sizeof x->output, "/tmp/ssdo_sample_%d.exr", (int)getpid());
+    x->o.bounce = bounce;
     x->o.env = x->s.env;
     x->o.env_rotate = x->s.env_rotate;
     x->o.radius_unit = RADIUS_WORLD;
@@ -40,6 +41,8 @@ static void run_sample(run *x, const sample *s)
     must(job_open(&x->j, &x->o, &x->log, &e), &e);
     must(frame_run(&x->j, s->file, x->output, &x->r, &e), &e);
 }
+
+static void run_sample(run *x, const sample *s) { run_bounce(x, s, NULL); }
 
 static void run_free(run *x)
 {
@@ -115,6 +118,39 @@ static void samples_beat_the_best_constant(void **state)
     }
 }
 
+// Relative error of a bounce on the far wall of the open box, whose light has crossed the room.
+static double error_on_far_wall(const char *bounce)
+{
+    static run x;
+    sample list[SAMPLE_MAX];
+    error e = {0};
+    const double wall = 2.4; // y of the world
+    double square = 0.0, mean = 0.0, n = 0.0;
+    int count = samples_list("samples", list, SAMPLE_MAX, &e);
+    for (int i = 0; i < count; i++)
+        if (strcmp(list[i].name, "box") == 0) run_bounce(&x, &list[i], bounce);
+    float *position = sample_read(x.s.file, "ViewLayer.Position", "XYZ", &e);
+    must(position != NULL, &e);
+    for (int i = 0; i < x.s.width * x.s.height; i++)
+        for (int k = 0; fabs((double)position[3 * i + 1] - wall) < 1e-3 && sample_is_surface(&x.s, i) && k < 3; k++) {
+            double v = (double)x.r.layers[LAYER_INDIRECT][3 * i + k];
+            double a = (double)x.s.indirect[0][3 * i + k], b = (double)x.s.indirect[1][3 * i + k];
+            square += (v - a) * (v - b), mean += 0.5 * (a + b), n += 1.0;
+        }
+    assert_true(n > 60000);
+    free(position);
+    run_free(&x);
+    return sqrt(square / n) / (mean / n);
+}
+
+static void vpl_lights_the_far_wall(void **state)
+{
+    (void)state;
+    double arc = error_on_far_wall("arc"), vpl = error_on_far_wall("vpl");
+    printf("figure: far wall of the box, indirect, relative rmse: vpl %.2f, arc %.2f\n", vpl, arc);
+    assert_true(vpl < 0.3);
+}
+
 // Correlation of our radiance with Blender's direct light in a scene lit by one hot texel, the environment turned by `rotate`.
 static double hot_correlation(double rotate)
 {
@@ -161,6 +197,7 @@ static void hot_texel_lights_the_right_side(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(hot_texel_lights_the_right_side),
+                                       cmocka_unit_test(vpl_lights_the_far_wall),
                                        cmocka_unit_test(samples_beat_the_best_constant)};
     return cmocka_run_group_tests_name("samples", tests, NULL, NULL);
 }
