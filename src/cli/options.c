@@ -32,6 +32,7 @@ void options_defaults(options *o)
         .multiply = "diffuse",
         .prefix = "",
         .device = -1,
+        .preview_every = 1,
         .radius_from = INT_MIN,
     };
 }

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "cli/frames.h"
 #include "cli/options.h"
 
 #define FIELD(name) offsetof(options, name)
@@ -176,7 +177,10 @@ const option_row option_rows[] = {
      .help = "Camera as a JSON file with fov, focal_px or ortho_width, and optionally principal and world_from_camera."},
 
     {.group = GROUP_RUN, .name = "preview", .argument = "FILE.png", .kind = OPT_PATH, .offset = FIELD(preview),
-     .help = "Also write an 8-bit picture of the result."},
+     .help = "Also write a contact sheet of the layers, for the eye: an 8-bit picture with labels, the radius as a bar and a checkerboard where there is no surface."},
+    {.group = GROUP_RUN, .name = "preview-every", .argument = "N", .kind = OPT_INT, .offset = FIELD(preview_every), .min = 1,
+     .max = FRAMES_MAX, .fallback = "1",
+     .help = "For a sequence: write a preview of the frames whose number is a multiple of N, the same ones in every task of a farm. The name of the preview then holds a place for the frame."},
     {.group = GROUP_RUN, .name = "frames", .argument = "RANGE", .kind = OPT_TEXT, .offset = FIELD(frames),
      .fallback = "every existing file of the input pattern",
      .help = "Frames of a sequence: 1-100, 1-100x2, 1-10:4, 1,5,7-9. Input and output then hold a place for the frame: ####, %04d or $F4."},
@@ -194,7 +198,7 @@ const option_row option_rows[] = {
      .fallback = "auto",
      .help = "How progress is told: auto is a bar at a terminal and percent lines elsewhere, alf prints ALF_PROGRESS for Tractor, openjd prints openjd_progress, openjd_status and openjd_fail for Open Job Description."},
     {.group = GROUP_RUN, .name = "report", .argument = "FILE.json", .kind = OPT_PATH, .offset = FIELD(report),
-     .help = "Also write what was concluded, what ran, why the rest did not, and the times."},
+     .help = "Also write what was concluded, what ran, why the rest did not, and the times. For a sequence, a file a frame if the name holds a place for it, else one file about all of them."},
     {.group = GROUP_RUN, .name = "device", .argument = "N", .kind = OPT_INT, .offset = FIELD(device), .min = 0, .max = 255,
      .fallback = "the GPU that CUDA_VISIBLE_DEVICES names, else the first that works, hardware before software",
      .help = "EGL device to run on, a number from --list-devices."},

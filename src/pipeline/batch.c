@@ -15,6 +15,7 @@
 #include "pipeline/preview.h"
 #include "pipeline/report.h"
 #include "pipeline/resume.h"
+#include "pipeline/shot.h"
 
 enum { PATH = 4096, NEIGHBOURS = 256 };
 
@@ -44,6 +45,7 @@ typedef struct batch {
     bool give_up; // a frame failed, and nobody asked to keep going
     int done, failed, skipped;
     frame_list failures;
+    shot_report report;
 } batch;
 
 bool batch_is(const options *o) { return o->frames || (o->input_count > 0 && pattern_is(o->inputs[0])); }
@@ -93,6 +95,7 @@ static void read_slot(batch *b, slot *s, int frame)
     const options *o = b->j->o;
     s->frame = frame;
     s->skipped = false;
+    s->why = NULL;
     s->steps = 0;
     s->error = (error){0};
     s->result = (frame_result){0};
@@ -128,12 +131,21 @@ static void *reader(void *arg)
     return NULL;
 }
 
+static double seconds_since(const struct timespec *started)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)(t.tv_sec - started->tv_sec) + 1e-9 * (double)(t.tv_nsec - started->tv_nsec);
+}
+
 static void note_failure(batch *b, const slot *s)
 {
     char text[1600];
     err_format(&s->error, text, sizeof text);
     log_error(b->j->log, "frame %d: %s", s->frame, text);
     b->failures.frames[b->failures.count++] = s->frame;
+    shot_add(&b->report,
+             &(shot_frame){s->frame, s->inputs.list[0], s->output, NULL, &s->error, NULL, seconds_since(&s->started)});
     pthread_mutex_lock(&b->lock);
     b->failed++;
     if (!b->j->o->keep_going) b->give_up = true;
@@ -142,9 +154,8 @@ static void note_failure(batch *b, const slot *s)
 
 static void summary(batch *b, const slot *s, int index)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    double seconds = (double)(t.tv_sec - s->started.tv_sec) + 1e-9 * (double)(t.tv_nsec - s->started.tv_nsec);
+    double seconds = seconds_since(&s->started);
+    shot_add(&b->report, &(shot_frame){s->frame, s->inputs.list[0], s->output, s->why, NULL, &s->result, seconds});
     if (s->skipped)
         progress_line(&b->progress, "frame %d (%d of %d): skipped, %s", s->frame, index + 1, b->frames.count, s->why);
     else
@@ -155,9 +166,9 @@ static bool write_extras(const batch *b, const slot *s, error *e)
 {
     const options *o = b->j->o;
     char path[PATH];
-    if (o->preview && (!pattern_path(o->preview, s->frame, path, sizeof path) || !preview_write(&s->result, path, e)))
-        return false;
-    return !o->report ||
+    bool look = o->preview && s->frame % o->preview_every == 0;
+    if (look && (!pattern_path(o->preview, s->frame, path, sizeof path) || !preview_write(&s->result, path, e))) return false;
+    return !o->report || !pattern_is(o->report) ||
            (pattern_path(o->report, s->frame, path, sizeof path) && report_write(b->j, &s->result, s->output, path, e));
 }
 
@@ -222,6 +233,9 @@ static bool list_frames(const options *o, frame_list *out, error *e)
     if (!pattern_is(o->output))
         return err_set(e, ERR_USAGE, o->output, NULL,
                        "a sequence needs a place for the frame in the output's name: ####, %%04d or $F4");
+    if (o->preview && !pattern_is(o->preview))
+        return err_set(e, ERR_USAGE, o->preview, NULL,
+                       "a sequence needs a place for the frame in the preview's name: ####, %%04d or $F4");
     if (o->frames) return frames_parse(o->frames, out, e);
     if (!pattern_scan(o->inputs[0], out, e)) return false;
     if (out->count == 0) return err_set(e, ERR_INPUT, o->inputs[0], NULL, "no file fits this pattern");
@@ -295,6 +309,7 @@ bool batch_run(job *j, error *e)
     b->failures.frames = ok ? mem_zero((size_t)b->frames.count, sizeof *b->failures.frames, e) : NULL;
     ok = ok && b->failures.frames;
     if (ok) compare_device(b);
+    if (ok && j->o->report && !pattern_is(j->o->report)) shot_begin(&b->report);
     if (ok) progress_begin(&b->progress, j->o->progress, b->frames.count, j->log);
     bool reading = ok && pthread_create(&threads[0], NULL, reader, b) == 0;
     bool writing = reading && pthread_create(&threads[1], NULL, writer, b) == 0;
@@ -304,10 +319,12 @@ bool batch_run(job *j, error *e)
         if (reading) pthread_join(threads[0], NULL);
         if (writing) pthread_join(threads[1], NULL);
         progress_end(&b->progress);
-        ok = conclude(b, e);
+        if (b->report.frames) ok = shot_write(&b->report, j, &b->failures, j->o->report, e);
+        ok = conclude(b, e) && ok;
     }
     frames_free(&b->failures);
     frames_free(&b->frames);
+    shot_free(&b->report);
     pthread_cond_destroy(&b->changed);
     pthread_mutex_destroy(&b->lock);
     free(b);

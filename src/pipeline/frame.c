@@ -184,8 +184,6 @@ static bool check_world(const job *j, const frame_result *r, error *e)
         "--env needs world directions, and this frame's camera rotation is unknown; use --env-frame camera or --camera FILE");
 }
 
-static double median_depth(const gbuffer *gb);
-
 static double radius_of(const job *j, const gbuffer *gb)
 {
     const options *o = j->o;
@@ -193,7 +191,7 @@ static double radius_of(const job *j, const gbuffer *gb)
     if (o->radius_unit == RADIUS_AUTO) return j->shot_radius > 0.0 ? j->shot_radius : gbuffer_auto_radius(gb);
     // Pixels are turned into one world distance at the frame's median depth, so that the radius is the same on all surfaces.
     double per_unit = gb->camera.fx;
-    return gb->camera.kind == CAMERA_ORTHOGRAPHIC ? o->radius / per_unit : o->radius * median_depth(gb) / per_unit;
+    return gb->camera.kind == CAMERA_ORTHOGRAPHIC ? o->radius / per_unit : o->radius * frame_median_depth(gb) / per_unit;
 }
 
 static int by_value(const void *a, const void *b)
@@ -203,7 +201,7 @@ static int by_value(const void *a, const void *b)
 }
 
 // Of at most a few thousand evenly spaced surfaces: enough for a scale.
-static double median_depth(const gbuffer *gb)
+double frame_median_depth(const gbuffer *gb)
 {
     enum { MOST = 4096 };
     float depths[MOST];

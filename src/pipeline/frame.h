@@ -78,6 +78,9 @@ bool frame_run(job *j, const char *input, const char *output, frame_result *resu
 bool frame_run_files(job *j, const char *const *inputs, int count, const char *output, frame_result *result, error *e);
 void frame_free(frame_result *result);
 
+// The depth in the middle of the surfaces, 1 where there are none: where a length in pixels and one in the scene are compared.
+double frame_median_depth(const gbuffer *gb);
+
 // The automatic radius of one frame, for a sequence that must have the same radius everywhere.
 bool frame_measure_radius(const job *j, const char *const *inputs, int count, double *radius, error *e);
 

@@ -5,52 +5,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/mem.h"
+#include "base/half.h"
+#include "pipeline/sheet.h"
 #include "plugin/images.h"
 
-enum { LABEL = 24, GAP = 6, COLUMNS = 2, GLYPH_W = 5, GLYPH_H = 7, ZOOM = 2, EXPOSURE_SAMPLES = 4096 };
+enum { LABEL = 24, GAP = 6, COLUMNS = 2, EXPOSURE_SAMPLES = 4096, NARROW = 320, WIDE = 960, BACKGROUND = 40 };
 
-// Five by seven pixels, a row a number, the leftmost pixel in bit 4.
-static const unsigned char font[128][GLYPH_H] = {
-    ['a'] = {0x00, 0x00, 0x0e, 0x01, 0x0f, 0x11, 0x0f}, ['b'] = {0x10, 0x10, 0x1e, 0x11, 0x11, 0x11, 0x1e},
-    ['c'] = {0x00, 0x00, 0x0e, 0x10, 0x10, 0x11, 0x0e}, ['d'] = {0x01, 0x01, 0x0f, 0x11, 0x11, 0x11, 0x0f},
-    ['e'] = {0x00, 0x00, 0x0e, 0x11, 0x1f, 0x10, 0x0e}, ['f'] = {0x06, 0x09, 0x08, 0x1c, 0x08, 0x08, 0x08},
-    ['g'] = {0x00, 0x0f, 0x11, 0x11, 0x0f, 0x01, 0x0e}, ['h'] = {0x10, 0x10, 0x1e, 0x11, 0x11, 0x11, 0x11},
-    ['i'] = {0x04, 0x00, 0x0c, 0x04, 0x04, 0x04, 0x0e}, ['j'] = {0x02, 0x00, 0x06, 0x02, 0x02, 0x12, 0x0c},
-    ['k'] = {0x10, 0x10, 0x12, 0x14, 0x18, 0x14, 0x12}, ['l'] = {0x0c, 0x04, 0x04, 0x04, 0x04, 0x04, 0x0e},
-    ['m'] = {0x00, 0x00, 0x1a, 0x15, 0x15, 0x15, 0x15}, ['n'] = {0x00, 0x00, 0x1e, 0x11, 0x11, 0x11, 0x11},
-    ['o'] = {0x00, 0x00, 0x0e, 0x11, 0x11, 0x11, 0x0e}, ['p'] = {0x00, 0x00, 0x1e, 0x11, 0x1e, 0x10, 0x10},
-    ['q'] = {0x00, 0x0f, 0x11, 0x11, 0x0f, 0x01, 0x01}, ['r'] = {0x00, 0x00, 0x16, 0x19, 0x10, 0x10, 0x10},
-    ['s'] = {0x00, 0x00, 0x0f, 0x10, 0x0e, 0x01, 0x1e}, ['t'] = {0x08, 0x08, 0x1c, 0x08, 0x08, 0x09, 0x06},
-    ['u'] = {0x00, 0x00, 0x11, 0x11, 0x11, 0x13, 0x0d}, ['v'] = {0x00, 0x00, 0x11, 0x11, 0x11, 0x0a, 0x04},
-    ['w'] = {0x00, 0x00, 0x11, 0x11, 0x15, 0x15, 0x0a}, ['x'] = {0x00, 0x00, 0x11, 0x0a, 0x04, 0x0a, 0x11},
-    ['y'] = {0x00, 0x11, 0x11, 0x11, 0x0f, 0x01, 0x0e}, ['z'] = {0x00, 0x00, 0x1f, 0x02, 0x04, 0x08, 0x1f},
-    ['0'] = {0x0e, 0x11, 0x13, 0x15, 0x19, 0x11, 0x0e}, ['1'] = {0x04, 0x0c, 0x04, 0x04, 0x04, 0x04, 0x0e},
-    ['2'] = {0x0e, 0x11, 0x01, 0x06, 0x08, 0x10, 0x1f}, ['3'] = {0x1e, 0x01, 0x01, 0x0e, 0x01, 0x01, 0x1e},
-    ['4'] = {0x02, 0x06, 0x0a, 0x12, 0x1f, 0x02, 0x02}, ['5'] = {0x1f, 0x10, 0x1e, 0x01, 0x01, 0x11, 0x0e},
-    ['6'] = {0x06, 0x08, 0x10, 0x1e, 0x11, 0x11, 0x0e}, ['7'] = {0x1f, 0x01, 0x02, 0x04, 0x08, 0x08, 0x08},
-    ['8'] = {0x0e, 0x11, 0x11, 0x0e, 0x11, 0x11, 0x0e}, ['9'] = {0x0e, 0x11, 0x11, 0x0f, 0x01, 0x02, 0x0c},
-    ['.'] = {0x00, 0x00, 0x00, 0x00, 0x00, 0x0c, 0x0c}, ['-'] = {0x00, 0x00, 0x00, 0x1e, 0x00, 0x00, 0x00},
-    ['+'] = {0x00, 0x04, 0x04, 0x1f, 0x04, 0x04, 0x00},
-};
+// From pixels to the sheet: blocks of `reduce` pixels squared become one dot, each drawn `enlarge` times as large. One of them
+// is 1.
+typedef struct zoom {
+    int reduce, enlarge;
+    int width, height; // of a cell
+} zoom;
 
-typedef struct sheet {
-    int width, height;
-    uint8_t *rgb;
-} sheet;
-
-static void put(sheet *s, int x, int y, const uint8_t c[3])
+static zoom zoom_for(int width, int height)
 {
-    if (x >= 0 && y >= 0 && x < s->width && y < s->height) memcpy(s->rgb + 3 * ((size_t)y * (size_t)s->width + (size_t)x), c, 3);
-}
-
-static void write_text(sheet *s, int x, int y, const char *text)
-{
-    static const uint8_t ink[3] = {230, 230, 230};
-    for (; *text; text++, x += (GLYPH_W + 1) * ZOOM)
-        for (int r = 0; r < GLYPH_H * ZOOM; r++)
-            for (int c = 0; c < GLYPH_W * ZOOM; c++)
-                if (font[*text & 127][r / ZOOM] >> (GLYPH_W - 1 - c / ZOOM) & 1) put(s, x + c, y + r, ink);
+    zoom z = {.reduce = (width + WIDE - 1) / WIDE, .enlarge = width < NARROW ? (NARROW + width - 1) / width : 1};
+    z.width = (width + z.reduce - 1) / z.reduce * z.enlarge;
+    z.height = (height + z.reduce - 1) / z.reduce * z.enlarge;
+    return z;
 }
 
 static uint8_t encode(float linear)
@@ -66,13 +39,16 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Factor that puts the 95th percentile of the surfaces' light at 0.8.
-static float exposure(const frame_result *r)
+static bool is_signed(layer_id l) { return l == LAYER_BENT || strncmp(layer_table[l].name, "sh_", 3) == 0; }
+
+// Factor that puts the 95th percentile of a layer's light, over its surfaces, at 0.8; 1 for what is no light.
+static float exposure(const frame_result *r, layer_id l)
 {
-    const float *v = r->layers[LAYER_COMPOSITE] ? r->layers[LAYER_COMPOSITE] : r->layers[LAYER_RADIANCE];
+    const float *v = r->layers[l];
     float values[EXPOSURE_SAMPLES];
     size_t n = 0, pixels = (size_t)r->gb.width * (size_t)r->gb.height, stride = r->gb.valid / EXPOSURE_SAMPLES + 1, seen = 0;
-    for (size_t i = 0; v && i < pixels && n < EXPOSURE_SAMPLES; i++)
+    if (strcmp(layer_table[l].channels, "RGB") != 0 || is_signed(l)) return 1.0f;
+    for (size_t i = 0; i < pixels && n < EXPOSURE_SAMPLES; i++)
         if (r->gb.depth[i] > 0.0f && seen++ % stride == 0) values[n++] = fmaxf(v[3 * i], fmaxf(v[3 * i + 1], v[3 * i + 2]));
     if (n == 0) return 1.0f;
     qsort(values, n, sizeof *values, by_value);
@@ -80,45 +56,119 @@ static float exposure(const frame_result *r)
     return top > 0.0f ? 0.8f / top : 1.0f;
 }
 
-static void draw_layer(sheet *s, const frame_result *r, layer_id l, int x0, int y0, float gain)
+// The input's own alpha: a coverage of 0 may have a picture behind it all the same.
+static float alpha_at(const frame_result *r, size_t i)
 {
+    channel_ref ref = r->resolution.channels[ROLE_ALPHA][0];
+    const exr_channel *c = &r->file->parts[ref.part].channels[ref.channel];
+    if (c->type == SAMPLE_HALF) return half_to_float(((const uint16_t *)c->data)[i]);
+    return c->type == SAMPLE_FLOAT ? ((const float *)c->data)[i] : 1.0f;
+}
+
+static bool has_surface(const gbuffer *gb, size_t i) { return gb->depth[i] > 0.0f || (gb->coverage && gb->coverage[i] > 0.0f); }
+
+// A dot of a layer: the mean over the block's pixels with a surface, all of them for the composite. False if there are none.
+typedef struct dot {
+    float v[3];
+    float open; // composite: what is left of the background behind it
+} dot;
+
+static bool average(const frame_result *r, layer_id l, int x0, int y0, int size, dot *d)
+{
+    const gbuffer *gb = &r->gb;
     size_t channels = strlen(layer_table[l].channels);
-    bool share = channels == 1;
-    float neutral = l == LAYER_DEPTHMASK ? 1.0f : 0.0f; // its 0 is shown white
-    for (int y = 0; y < r->gb.height; y++)
-        for (int x = 0; x < r->gb.width; x++) {
-            const float *v = r->layers[l] + channels * ((size_t)y * (size_t)r->gb.width + (size_t)x);
-            uint8_t c[3];
-            for (size_t k = 0; k < 3; k++)
-                c[k] = share             ? (uint8_t)lrintf(255.0f * (v[0] + neutral))
-                       : l == LAYER_BENT ? (uint8_t)lrintf(127.5f * (v[k] + 1.0f))
-                                         : encode(gain * v[k]);
-            put(s, x0 + x, y0 + y, c);
+    bool picture = l == LAYER_COMPOSITE, alpha = picture && r->resolution.components[ROLE_ALPHA] > 0;
+    float n = 0.0f;
+    *d = (dot){0};
+    for (int y = y0; y < y0 + size && y < gb->height; y++)
+        for (int x = x0; x < x0 + size && x < gb->width; x++) {
+            size_t i = (size_t)y * (size_t)gb->width + (size_t)x;
+            if (!picture && !has_surface(gb, i)) continue;
+            for (size_t k = 0; k < 3; k++) d->v[k] += r->layers[l][i * channels + (channels > k ? k : 0)];
+            if (alpha) d->open += 1.0f - fminf(1.0f, fmaxf(0.0f, alpha_at(r, i)));
+            n += 1.0f;
         }
+    for (int k = 0; k < 3 && n > 0.0f; k++) d->v[k] /= n;
+    if (n > 0.0f) d->open /= n;
+    return n > 0.0f;
+}
+
+static uint8_t share(float v) { return (uint8_t)lrintf(255.0f * fminf(1.0f, fmaxf(0.0f, v))); }
+
+static float decode(uint8_t code)
+{
+    float v = (float)code / 255.0f;
+    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
+}
+
+static uint8_t shade(layer_id l, const dot *d, int k, float gain, uint8_t checker)
+{
+    if (is_signed(l)) return share(0.5f * (d->v[k] + 1.0f));
+    if (l == LAYER_DEPTHMASK) return share(d->v[0] + 1.0f); // its 0 is shown white
+    if (!layer_table[l].channels[1]) return share(d->v[0]);
+    return encode(gain * d->v[k] + d->open * decode(checker));
+}
+
+static void draw_layer(sheet *s, const frame_result *r, layer_id l, int x0, int y0, const zoom *z, float gain)
+{
+    for (int y = 0; y < z->height; y += z->enlarge)
+        for (int x = 0; x < z->width; x += z->enlarge) {
+            dot d;
+            bool any = average(r, l, x / z->enlarge * z->reduce, y / z->enlarge * z->reduce, z->reduce, &d);
+            for (int i = 0; i < z->enlarge * z->enlarge; i++) {
+                int sx = x + i % z->enlarge, sy = y + i / z->enlarge;
+                uint8_t checker = sheet_checker(sx, sy), c[3] = {checker, checker, checker};
+                for (int k = 0; any && k < 3; k++) c[k] = shade(l, &d, k, gain, checker);
+                sheet_put(s, x0 + sx, y0 + sy, c);
+            }
+        }
+}
+
+// The radius and its length in the cells; the checkerboard. Below `y`, over `width` columns.
+static void draw_legend(sheet *s, const frame_result *r, int y, int width, const zoom *z)
+{
+    static const uint8_t ink[3] = {235, 235, 235};
+    char text[96];
+    const camera *c = &r->gb.camera;
+    double pixels = r->set.radius * c->fx / (c->kind == CAMERA_ORTHOGRAPHIC ? 1.0 : frame_median_depth(&r->gb));
+    int length = (int)lrint(fmin(pixels * z->enlarge / z->reduce, 1e6)), x = GAP;
+    snprintf(text, sizeof text, "radius %.3g = %.0f px", r->set.radius, pixels);
+    sheet_text(s, x, y + (LABEL - SHEET_TEXT_HEIGHT) / 2, text);
+    y += LABEL;
+    bool whole = length <= width; // otherwise the bar has no right end
+    int shown = whole ? length : width;
+    sheet_fill(s, x, y + 6, shown > 0 ? shown : 1, 2, ink);
+    sheet_fill(s, x, y, 2, 14, ink);
+    if (whole && length > 2) sheet_fill(s, x + length - 2, y, 2, 14, ink);
+    y += LABEL;
+    for (int i = 0; i < 32 * 16; i++) {
+        uint8_t v = sheet_checker(i % 32, i / 32);
+        sheet_put(s, x + i % 32, y + i / 32, (uint8_t[3]){v, v, v});
+    }
+    sheet_text(s, x + 32 + SHEET_LETTER, y + 1, "no surface");
 }
 
 bool preview_write(const frame_result *r, const char *path, error *e)
 {
-    int cells = 0, w = r->gb.width, h = r->gb.height;
+    int cells = 0;
+    zoom z = zoom_for(r->gb.width, r->gb.height);
     for (int l = 0; l < LAYER_COUNT; l++) cells += r->layers[l] != NULL;
     int columns = cells < COLUMNS ? cells : COLUMNS, rows = (cells + COLUMNS - 1) / COLUMNS;
-    sheet s = {.width = columns * (w + GAP) + GAP, .height = rows * (h + LABEL + GAP) + GAP};
-    s.rgb = mem_zero((size_t)s.width * (size_t)s.height, 3, e);
-    if (!s.rgb) return false;
-    memset(s.rgb, 40, 3 * (size_t)s.width * (size_t)s.height);
-    float gain = exposure(r);
+    int below = rows * (z.height + LABEL + GAP) + GAP;
+    sheet s;
+    if (!sheet_make(&s, columns * (z.width + GAP) + GAP, below + 3 * LABEL, BACKGROUND, e)) return false;
     for (int l = 0, cell = 0; l < LAYER_COUNT; l++) {
         if (!r->layers[l]) continue;
-        int x = GAP + cell % COLUMNS * (w + GAP), y = GAP + cell / COLUMNS * (h + LABEL + GAP);
-        char label[96];
-        int n = snprintf(label, sizeof label, "%s", layer_table[l].name);
-        if (l == LAYER_OCCLUSION) snprintf(label + n, sizeof label - (size_t)n, "  radius %.3g", r->set.radius);
-        if ((int)strlen(label) * (GLYPH_W + 1) * ZOOM > w) label[n] = 0; // no room for the radius
-        write_text(&s, x, y + (LABEL - GLYPH_H * ZOOM) / 2, label);
-        draw_layer(&s, r, (layer_id)l, x, y + LABEL, gain);
+        int x = GAP + cell % COLUMNS * (z.width + GAP), y = GAP + cell / COLUMNS * (z.height + LABEL + GAP);
+        float gain = exposure(r, (layer_id)l);
+        char label[64];
+        snprintf(label, sizeof label, gain == 1.0f ? "%s" : "%s x%.2g", layer_table[l].name, (double)gain);
+        sheet_text(&s, x, y + (LABEL - SHEET_TEXT_HEIGHT) / 2, label);
+        draw_layer(&s, r, (layer_id)l, x, y + LABEL, &z, gain);
         cell++;
     }
+    draw_legend(&s, r, below, columns * (z.width + GAP) - GAP, &z);
     bool ok = images_write_png(path, s.width, s.height, s.rgb, e);
-    free(s.rgb);
+    sheet_free(&s);
     return ok;
 }

@@ -4,8 +4,11 @@
 
 #include "pipeline/frame.h"
 
-// One cell a layer, two columns, a label over each. Light is exposed so that the 95th percentile of the composite (or radiance)
-// is at 0.8, and sRGB-encoded; shares are shown as they are.
+// One cell a layer, two columns, a label over each, and a legend below: the occlusion radius, as a number and as a bar of the
+// length it has in the cells at the middle depth, and the checkerboard that stands where there is no surface. Each layer of light
+// is exposed so that its 95th percentile is at 0.8 (its label says by which factor), and sRGB-encoded; shares are shown as they
+// are, directions and coefficients with 0 as grey. A composite with alpha lies over the checkerboard. Large frames are reduced
+// and small ones enlarged by a whole number, so that a cell is 320 to 960 columns wide.
 bool preview_write(const frame_result *r, const char *path, error *e);
 
 #endif

@@ -4,6 +4,11 @@
 
 #include "pipeline/frame.h"
 
+// Points of the disc that a sphere of the occlusion radius covers on the screen, that lie outside the frame, as a share.
+double report_off_frame_share(const frame_result *r);
+
+extern const char *const report_stage_names[STAGE_COUNT];
+
 bool report_write(const job *j, const frame_result *r, const char *output, const char *path, error *e);
 
 #endif

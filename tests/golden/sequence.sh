@@ -16,7 +16,7 @@ for i in 5 2; do "$SSDO" -q "$dir/in/f.%04d.exr" -o "$dir/b/f.%04d.exr" --frames
 # Interrupted at once, then completed.
 "$SSDO" -q "$dir/in/f.####.exr" -o "$dir/c/f.####.exr" &
 pid=$!
-sleep 0.7
+until [ -e "$dir/c/f.0002.exr" ] || ! kill -0 $pid 2>/dev/null; do sleep 0.05; done
 kill -TERM $pid
 wait $pid
 code=$?
@@ -52,4 +52,25 @@ rm -rf "$dir/b" && mkdir "$dir/b"
 [ $? = 1 ] || die "exit code of a batch with bad frames"
 grep -q 'failed: 3, 7' "$dir/err" || die "the list of failed frames: $(cat "$dir/err")"
 [ "$(ls "$dir/b" | wc -l)" = 5 ] || die "good frames are missing"
+
+# One report about all frames; previews at the chosen step, the same frames whatever the task's share.
+"$SSDO" -q "$dir/in/f.####.exr" -o "$dir/b/f.####.exr" --frames 1-6 --keep-going --skip-existing --report "$dir/shot.json" 2>/dev/null
+for line in '"done": 0' '"skipped": 5' '"failed": 1' '"failed_frames": "3"' '"status": "failed"' '"why": "already done"'; do
+    grep -qF "$line" "$dir/shot.json" || die "the report lacks $line: $(cat "$dir/shot.json")"
+done
+rm "$dir"/b/*
+"$SSDO" -q "$dir/in/f.####.exr" -o "$dir/b/f.####.exr" --frames 1-2,4-6 --samples 4 --preview "$dir/b/p.####.png" --preview-every 2 --report "$dir/b/r.####.json" || die "previews"
+[ "$(cd "$dir/b" && echo p.*)" = "p.0002.png p.0004.png p.0006.png" ] || die "previews: $(ls "$dir/b")"
+[ "$(ls "$dir/b" | grep -c '^r\.000[12456]\.json$')" = 5 ] || die "reports: $(ls "$dir/b")"
+"$SSDO" -q "$dir/in/f.####.exr" -o "$dir/b/f.####.exr" --preview "$dir/b/p.png" 2>&1 | grep -q "a place for the frame in the preview's name" || die "a preview that is overwritten"
+
+# The contact sheet: two columns of cells, a legend below, a checkerboard of two greys where the picture has no surface.
+"$SSDO" -q samples/still.exr -o "$dir/x.exr" --samples 4 --preview "$dir/x.png" || die "the preview"
+oiiotool --info "$dir/x.png" | grep -q '978 x  678, 3 channel' || die "the size of the sheet: $(oiiotool --info "$dir/x.png")"
+grey() { oiiotool "$dir/x.png" --cut "8x8+$1+$2" -o "$dir/x.ppm" && tail -c 192 "$dir/x.ppm" | od -An -v -tu1 -w3 | sed 's/^ *//; s/  */ /g' | sort -u | tr '\n' ','; }
+for at in '8 32' '494 32' '8 332' '494 332'; do
+    case $(grey $at) in *"72 72 72"*) ;; *) die "no checkerboard at $at: $(grey $at)" ;; esac
+done
+"$SSDO" -q samples/horizon.exr -o "$dir/x.exr" --samples 4 --preview "$dir/x.png" --layers composite || die "the preview"
+case $(grey 8 32) in *"72 72 72"* | *"104 104 104"*) die "a sky is not 'no surface': $(grey 8 32)" ;; esac
 echo "figure: interrupted after $before of 6 frames, resumed to the same bytes"

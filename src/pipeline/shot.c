@@ -1,0 +1,74 @@
+#include "pipeline/shot.h"
+
+#include "pipeline/json.h"
+#include "pipeline/report.h"
+
+void shot_begin(shot_report *s) { *s = (shot_report){.frames = json_object_new_array()}; }
+
+void shot_free(shot_report *s)
+{
+    json_object_put(s->frames);
+    *s = (shot_report){0};
+}
+
+static void add_result(shot_report *s, json_object *o, const frame_result *r)
+{
+    double pixels = (double)r->gb.width * r->gb.height;
+    json_put_number(o, "radius", r->set.radius);
+    json_put_number(o, "valid_share", pixels > 0 ? (double)r->gb.valid / pixels : 0.0);
+    json_put_number(o, "off_frame_share", report_off_frame_share(r));
+    json_put(o, "clamped_samples", json_object_new_int64((int64_t)r->clamped));
+    s->clamped += r->clamped;
+    for (int i = 0; i < STAGE_COUNT; i++) {
+        s->wall_ms[i] += r->wall_ms[i];
+        s->cpu_ms[i] += r->cpu_ms[i];
+    }
+}
+
+void shot_add(shot_report *s, const shot_frame *f)
+{
+    if (!s->frames) return;
+    char text[1600];
+    json_object *o = json_object_new_object();
+    json_put(o, "frame", json_object_new_int(f->frame));
+    json_put_text(o, "status", f->failure ? "failed" : f->why ? "skipped" : "done");
+    if (f->failure) err_format(f->failure, text, sizeof text);
+    if (f->failure || f->why) json_put_text(o, "why", f->failure ? text : f->why);
+    json_put_text(o, "input", f->input);
+    json_put_text(o, "output", f->output);
+    json_put_number(o, "seconds", f->seconds);
+    if (f->failure)
+        s->failed++;
+    else if (f->why)
+        s->skipped++;
+    else
+        s->done++;
+    if (!f->failure && !f->why) add_result(s, o, f->r);
+    json_object_array_add(s->frames, o);
+}
+
+bool shot_write(shot_report *s, const job *j, const frame_list *failures, const char *path, error *e)
+{
+    json_object *o = json_object_new_object(), *times = json_object_new_array(), *warnings = json_object_new_array();
+    char args[1024], failed[512];
+    options_record(j->o, args, sizeof args);
+    frames_format(failures, failed, sizeof failed);
+    json_put_text(o, "version", SSDO_VERSION);
+    json_put_text(o, "device", j->g.renderer);
+    json_put_text(o, "args", args);
+    if (j->shot_radius > 0.0) json_put_number(o, "radius", j->shot_radius);
+    json_put(o, "done", json_object_new_int(s->done));
+    json_put(o, "skipped", json_object_new_int(s->skipped));
+    json_put(o, "failed", json_object_new_int(s->failed));
+    json_put_text(o, "failed_frames", failed);
+    json_put(o, "stopped", json_object_new_boolean(job_stopped(j)));
+    for (int i = 0; i < STAGE_COUNT; i++)
+        json_object_array_add(times, json_time(report_stage_names[i], s->wall_ms[i], s->cpu_ms[i]));
+    json_put(o, "times", times);
+    json_put(o, "clamped_samples", json_object_new_int64((int64_t)s->clamped));
+    for (int i = 0; i < j->log->warning_count; i++) json_object_array_add(warnings, json_object_new_string(j->log->warnings[i]));
+    json_put(o, "warnings", warnings);
+    json_put(o, "frames", s->frames);
+    s->frames = NULL;
+    return json_save(o, path, e);
+}
