@@ -81,7 +81,7 @@ typedef struct options {
 
     const char *preview, *report;
     const char *display, *view; // of the config, for previews; NULL = its defaults
-    int preview_every; // sequences: frames whose number is a multiple of it have a preview
+    int preview_every;          // sequences: frames whose number is a multiple of it have a preview
     progress_form progress;
     int device; // -1 = first usable
     bool list_devices;
