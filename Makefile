@@ -139,26 +139,40 @@ check-hosts:
 BENCH     := bench cache embree generated plot references rows run scenes summary table yardstick
 BENCH_OBJ := $(BENCH:%=$(BUILD)/tests/bench/%.o)
 UNSEEN    ?= 101# the variant of the scenes that bench-unseen renders
-UNSEEN_SPP ?= 96
+UNSEEN_SPP ?= 48
+# Renders and references, kept outside the tree: they survive `make clean`, and every clone shares them.
+BENCH_CACHE ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/ssdo-bench
 $(BUILD)/bench-program: $(BENCH_OBJ) $(TESTLIB) $(BUILD)/libssdo.a
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lembree3 $(PKG_LIBS)
 
-.PHONY: bench bench-unseen mutate
+.PHONY: bench bench-unseen bench-readme mutate truth
 bench: deps-bench
 	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench-program
-	@$(BUILD)/bench-program --out $(BUILD)/bench --cache $(BUILD)/bench-cache
+	@$(BUILD)/bench-program --out $(BUILD)/bench --cache $(BENCH_CACHE)/references
 
 # Scenes that nothing was tuned on: rendered once for each UNSEEN.
 bench-unseen: deps-bench
 	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench-program
-	@$(MAKE) --no-print-directory $(BUILD)/unseen/$(UNSEEN)/rendered
-	@$(BUILD)/bench-program --rendered-only --samples $(BUILD)/unseen/$(UNSEEN) --out $(BUILD)/bench-unseen \
-	    --cache $(BUILD)/bench-cache --title 'Bench of unseen scenes, variant $(UNSEEN)' --command 'make bench-unseen UNSEEN=$(UNSEEN)'
+	@$(MAKE) --no-print-directory $(BENCH_CACHE)/unseen/$(UNSEEN)/rendered
+	@$(BUILD)/bench-program --rendered-only --samples $(BENCH_CACHE)/unseen/$(UNSEEN) --out $(BUILD)/bench-unseen \
+	    --cache $(BENCH_CACHE)/references --title 'Bench of unseen scenes, variant $(UNSEEN)' --command 'make bench-unseen UNSEEN=$(UNSEEN)'
 
-$(BUILD)/unseen/%/rendered:
+$(BENCH_CACHE)/unseen/%/rendered:
 	@mkdir -p $(@D)
 	blender -b --factory-startup -P samples/render.py -- --all --out $(@D) --variant $* --size 480x270 --spp $(UNSEEN_SPP) >$(@D)/log
 	@touch $@
+
+# The tables and the plot of the last bench and bench-unseen, pasted into README.md.
+bench-readme: ; @sh tests/bench/readme.sh $(BUILD)
+
+# Renders the truth of SCENE again with the committed script and compares: TRUTH_SPP=384 gives the committed pixels, fewer are faster.
+SCENE     ?= ortho
+TRUTH_SPP ?= 64
+truth: deps-check
+	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/tests/bench/truth_check
+	@rm -rf $(BUILD)/truth && mkdir -p $(BUILD)/truth && cp samples/sky_*.exr $(BUILD)/truth
+	blender -b --factory-startup -P samples/render.py -- --scene $(SCENE) --out $(BUILD)/truth --spp $(TRUTH_SPP) >$(BUILD)/truth/log
+	@$(BUILD)/tests/bench/truth_check samples $(BUILD)/truth $(TRUTH_SPP)
 
 # What a whole frame costs beside copying its file: BUILD/bench/frame.md.
 .PHONY: bench-frame
@@ -175,8 +189,8 @@ $(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(TESTLIB) $(BUILD)/libssdo.a
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
 
 # Which errors of 5 % in the shaders the tests see.
-mutate: unit
-	@sh tests/bench/mutate.sh $(BUILD)
+mutate: $(patsubst %,$(BUILD)/tests/test_%,bias convergence arc s3ho)
+	@sh tests/bench/mutate.sh $(BUILD) $(WORD)
 
 lint: deps-check
 	@sh tests/lint.sh $(BUILD)

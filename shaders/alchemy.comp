@@ -1,6 +1,7 @@
 #version 450 core
 // Alchemy obscurance (chapter 4): S = (2 pi c / n) sum max(0, N.w - bias) H(R - |w|) / max(c^2, w.w), c = 0.1 R,
-// A = max(0, 1 - scale S)^contrast. Taps on a spiral over the projected disc, uniform in radius and angle. This pass stores 1 - S;
+// A = max(0, 1 - scale S)^contrast. Taps on a spiral over the projected disc, uniform in radius and angle, a golden section of a turn
+// apart (the chapter's 7 / 9 of a turn puts them on nine spokes, however many they are). This pass stores 1 - S;
 // look.comp makes A of it after the blur, for filters act on linear quantities (THEORY.md 1.9).
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
@@ -42,7 +43,7 @@ void main() {
     float sum = 0.0;
     for (int i = 0; i < params.samples; i++) {
         float alpha = (float(i) + noise.y) / float(params.samples);
-        float theta = 2.0 * PI * alpha * (7.0 * float(params.samples) / 9.0) + turn;
+        float theta = 2.0 * PI * 0.61803399 * float(i) + turn;
         vec2 tap = vec2(p) + 0.5 + alpha * disc * vec2(cos(theta), sin(theta));
         sum += obscurance(P, N, bias, ivec2(floor(tap)));
     }

@@ -6,14 +6,14 @@
 #ifndef SSDO_TESTS_BENCH_H
 #define SSDO_TESTS_BENCH_H
 
+#include "method_reference.h"
 #include "passes/method.h"
-#include "reference.h"
 #include "rig.h"
 #include "sample.h"
 #include "scene_picture.h"
 #include "truth.h"
 
-enum { BENCH_ROUNDS = 9, BENCH_SCENES = 24, BENCH_ROWS = 160, BENCH_PIXELS = 4096, BENCH_LONG = 256 };
+enum { BENCH_ROUNDS = 9, BENCH_SCENES = 24, BENCH_ROWS = 256, BENCH_PIXELS = 4096, BENCH_VPL_PIXELS = 256, BENCH_LONG = 256 };
 
 // ---- scenes (scenes.c, generated.c)
 
@@ -57,9 +57,10 @@ typedef struct bench_row {
     int samples, blur;      // blur in pixels, 0 none
     double thickness;       // share of the radius; < 0 as the method's row has it
     double scale, contrast; // 1
-    bool no_planes;
-    bool half;     // --resolution half
-    bool standard; // the method's own defaults: a row of the short table
+    bool no_planes, half;   // --planes off, --resolution half
+    const char *bounce;     // NULL: the method's own
+    int lights;             // of the bounce vpl
+    bool standard;          // the method's own defaults: a row of the short table
 } bench_row;
 
 // Share and contrast of Alchemy with the lowest root mean square over the scenes, by a fixed grid.
@@ -74,8 +75,9 @@ typedef struct bench_time {
 
 typedef struct bench_cell { // a row on a scene
     score occlusion, radiance, indirect;
-    bool has_occlusion, has_radiance, has_indirect, has_a;
-    double a_rmse, a_bias;
+    bool has_occlusion, has_radiance, has_indirect;
+    bool has_a, has_a_radiance, has_a_indirect;
+    double a_rmse, a_bias, a_radiance, a_indirect;      // against A; of the light relative to its mean
     int rounds, all_rounds, round[BENCH_ROUNDS];        // in which it was timed
     bench_time direct[BENCH_ROUNDS], all[BENCH_ROUNDS]; // occlusion alone; every layer the method makes (0: not timed)
 } bench_cell;
@@ -89,9 +91,16 @@ bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned laye
 // All error figures of a cell, and the times of that one run.
 bool bench_measure(rig *r, const bench_scene *b, const bench_row *row, const char *cache, bench_cell *cell, error *e);
 
-// Reference A of a row on a scene at its pixels, from the cache if it is there (references.c). Returns NULL without an error for
-// a row that has none. Free with free().
+// Reference A of a row on a scene at its pixels, from the cache if it is there (references.c): 4 numbers a pixel, occlusion and
+// the radiance of methods that have one. Returns NULL without an error for a row that has none. Free with free().
 double *bench_reference(const bench_scene *b, const bench_row *row, const char *cache, error *e);
+// Of the bounce vpl: 3 numbers for each of the first BENCH_VPL_PIXELS pixels in steps of pixel_count / BENCH_VPL_PIXELS, for
+// senders lit with `radiance` (3 a pixel of the frame).
+double *bench_reference_vpl(const bench_scene *b, const float *radiance, const char *cache, error *e);
+static inline pixel bench_vpl_pixel(const bench_scene *b, int i)
+{
+    return b->pixels[(long)i * b->pixel_count / BENCH_VPL_PIXELS];
+}
 
 // A cache of blobs by content hash (cache.c): `key` starts with cache_start and grows by what the content depends on.
 typedef unsigned long long cache_key;
@@ -131,7 +140,7 @@ typedef struct bench_results {
 typedef struct bench_summary {
     int scenes;
     double occlusion, radiance, indirect; // rms; relative for the light; NAN where the row makes none
-    double a;
+    double a, a_radiance, a_indirect;
     double cpu, wall, all_cpu; // ms per megapixel, means over the scenes
     double yards, all_yards;   // in yardsticks of the same round and scene
     bool front;                // on the Pareto front of occlusion against time

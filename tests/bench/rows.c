@@ -5,18 +5,33 @@
 #include "base/mem.h"
 #include "bench.h"
 
-static const int budgets[] = {8, 16, 32, 64, 128, 256, 1024};
-enum { BUDGETS = sizeof budgets / sizeof *budgets };
+static const int budgets[] = {8, 16, 32, 64, 128, 256};
+enum { BUDGETS = sizeof budgets / sizeof *budgets, CONVERGED = 1024 };
 
-// Rows besides a method's own: the same shader under another assumption.
-static const struct {
+// Rows besides a method's own: the same shader under another setting, at every second budget and at the method's defaults; with
+// `defaults` only there. `converged`: at 1024 samples as well.
+typedef struct variant {
     const char *method, *suffix;
-    double thickness; // share of the radius; < 0 the method's own
+    double thickness; // share of the radius; 0 the method's own
     bool no_planes;
-} variants[] = {
-    {"ssdo", ", no thickness", INFINITY, false},
-    {"arc", ", no planes", -1.0, true},
+    const char *bounce;
+    int lights;
+    bool defaults, converged;
+} variant;
+
+static const variant variants[] = {
+    {.method = "ssdo", .suffix = ", no thickness", .thickness = INFINITY},
+    {.method = "arc", .suffix = ", no planes", .no_planes = true, .converged = true},
+    {.method = "arc", .suffix = ", bounce vpl 64", .bounce = "vpl", .lights = 64, .defaults = true},
+    {.method = "arc", .suffix = ", bounce vpl 256", .bounce = "vpl", .lights = 256, .defaults = true},
+    {.method = "arc", .suffix = ", bounce vpl 1024", .bounce = "vpl", .lights = 1024, .defaults = true},
 };
+
+// Methods whose error with (nearly) endless samples issue 4 compares.
+static bool is_slices(const method *m)
+{
+    return strcmp(m->name, "arc") == 0 || strcmp(m->name, "gtao") == 0 || strcmp(m->name, "bitmask") == 0;
+}
 
 static bench_row row_of(const method *m, const char *suffix, int samples, int blur)
 {
@@ -24,6 +39,25 @@ static bench_row row_of(const method *m, const char *suffix, int samples, int bl
         .kind = ROW_METHOD, .m = m, .samples = samples, .blur = blur, .thickness = -1.0, .scale = 1.0, .contrast = 1.0};
     snprintf(r.name, sizeof r.name, "%s%s", m->name, suffix);
     return r;
+}
+
+static bench_row variant_row(const method *m, const variant *v, int samples, int blur)
+{
+    bench_row r = row_of(m, v->suffix, samples, blur);
+    if (v->thickness > 0.0) r.thickness = v->thickness;
+    r.no_planes = v->no_planes;
+    r.bounce = v->bounce, r.lights = v->lights;
+    r.standard = blur > 0;
+    return r;
+}
+
+static int variant_rows(const method *m, const variant *v, bench_row *rows)
+{
+    int n = 0;
+    for (int i = 1; !v->defaults && i < BUDGETS; i += 2) rows[n++] = variant_row(m, v, budgets[i], 0);
+    if (v->converged) rows[n++] = variant_row(m, v, CONVERGED, 0);
+    rows[n++] = variant_row(m, v, m->samples, m->blur);
+    return n;
 }
 
 static int oracles(bench_row *rows)
@@ -47,33 +81,22 @@ static int method_rows(const method *m, bench_row *rows)
 {
     int n = 0;
     for (int i = 0; i < BUDGETS; i++) rows[n++] = row_of(m, "", budgets[i], 0);
+    if (is_slices(m)) rows[n++] = row_of(m, "", CONVERGED, 0);
     rows[n++] = row_of(m, "", m->samples, m->blur);
     rows[n - 1].standard = true;
-    bool listed = m->blur == 0;
-    for (int i = 0; i < BUDGETS; i++) listed |= budgets[i] == m->samples;
-    if (!listed) rows[n++] = row_of(m, "", m->samples, 0);
     for (int i = 0; m->blur > 0 && i < 2; i++)
         rows[n++] = row_of(m, "", i ? m->samples * 4 : m->samples / 4, m->blur); // --quality
     rows[n] = row_of(m, ", half resolution", m->samples, m->blur);
     rows[n].half = rows[n].standard = true;
     n++;
-    for (size_t v = 0; v < sizeof variants / sizeof *variants; v++) {
-        if (strcmp(variants[v].method, m->name) != 0) continue;
-        for (int i = 1; i <= BUDGETS; i += 2) {
-            bool own = i == BUDGETS; // the last one: the method's defaults
-            bench_row *r = &rows[n++];
-            *r = row_of(m, variants[v].suffix, own ? m->samples : budgets[i], own ? m->blur : 0);
-            r->standard = own;
-            r->thickness = variants[v].thickness;
-            r->no_planes = variants[v].no_planes;
-        }
-    }
+    for (size_t v = 0; v < sizeof variants / sizeof *variants; v++)
+        if (strcmp(variants[v].method, m->name) == 0) n += variant_rows(m, &variants[v], rows + n);
     return n;
 }
 
 int bench_rows(bench_row *rows, int max, double scale, double contrast)
 {
-    enum { MOST = 24 }; // of one method
+    enum { MOST = 40 }; // of one method
     int n = oracles(rows);
     for (const method *m = methods; m->name && n + 2 * MOST < max; m++) {
         n += method_rows(m, rows + n);

@@ -17,16 +17,19 @@ pass_settings bench_settings(const bench_row *row, const bench_scene *b)
     set.blur = row->blur;
     set.planes = !row->no_planes;
     set.half = row->half;
+    if (row->lights > 0) set.vpl_count = row->lights;
     set.scale = row->scale;
     set.contrast = row->contrast;
     return set;
 }
 
+static const char *bounce_of(const bench_row *row) { return row->bounce ? row->bounce : row->m->bounce; }
+
 unsigned bench_layers(const bench_row *row)
 {
     if (row->kind != ROW_METHOD) return 0;
     if (row->samples > BENCH_LONG) return 1u << LAYER_OCCLUSION;
-    return 1u << LAYER_OCCLUSION | 1u << LAYER_RADIANCE | (row->m->bounce ? 1u << LAYER_INDIRECT : 0u);
+    return 1u << LAYER_OCCLUSION | 1u << LAYER_RADIANCE | (bounce_of(row) ? 1u << LAYER_INDIRECT : 0u);
 }
 
 static void take_time(const frame_result *f, const char *without, bench_time *t)
@@ -46,7 +49,7 @@ bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned laye
     r->job.env = b->env;
     r->job.env_image = b->env_image;
     r->job.env_loaded = true;
-    r->options.bounce = row->m->bounce;
+    r->options.bounce = bounce_of(row);
     r->options.report = "timed"; // a report makes the passes wait and take their times
     bool ok = rig_run(r, &b->gb, row->m, &set, layers, out, e);
     r->job.env_loaded = false;
@@ -121,16 +124,47 @@ static bool measure_oracle(const bench_scene *b, const bench_row *row, bench_cel
     return e->code == ERR_NONE;
 }
 
-static void compare(const bench_scene *b, const float *occlusion, const double *expected, bench_cell *cell)
+static const float *at(const bench_scene *b, const float *values, int channels, pixel p)
 {
-    double square = 0.0, sum = 0.0;
-    for (int i = 0; i < b->pixel_count; i++) {
-        double d = (double)occlusion[b->pixels[i].y * b->gb.width + b->pixels[i].x] - expected[i];
+    return values + channels * (p.y * b->gb.width + p.x);
+}
+
+// Relative root mean square difference of light from what is expected: pixel i of `count`, `stride` numbers apart.
+static double light_error(const bench_scene *b, const float *light, const double *expected, int count, int stride, bool vpl)
+{
+    double square = 0.0, mean = 0.0;
+    for (int i = 0; i < count; i++) {
+        const float *x = at(b, light, 3, vpl ? bench_vpl_pixel(b, i) : b->pixels[i]);
+        for (int k = 0; k < 3; k++) {
+            double wanted = expected[i * stride + k], d = (double)x[k] - wanted;
+            square += d * d / (3.0 * count), mean += wanted / (3.0 * count);
+        }
+    }
+    return sqrt(square) / mean;
+}
+
+static bool compare(const bench_scene *b, const bench_row *row, const frame_result *f, const char *cache, bench_cell *cell,
+                    error *e)
+{
+    double *expected = bench_reference(b, row, cache, e), square = 0.0, sum = 0.0;
+    for (int i = 0; expected && i < b->pixel_count; i++) {
+        double d = (double)*at(b, f->layers[LAYER_OCCLUSION], 1, b->pixels[i]) - expected[4 * i];
         square += d * d, sum += d;
     }
-    cell->has_a = true;
+    cell->has_a = expected;
     cell->a_rmse = sqrt(square / b->pixel_count);
     cell->a_bias = sum / b->pixel_count;
+    cell->has_a_radiance = expected && cell->has_radiance && method_references_light(row->m);
+    if (cell->has_a_radiance)
+        cell->a_radiance = light_error(b, f->layers[LAYER_RADIANCE], expected + 1, b->pixel_count, 4, false);
+    free(expected);
+    cell->has_a_indirect = cell->has_indirect && row->lights > 0;
+    if (cell->has_a_indirect && e->code == ERR_NONE) {
+        expected = bench_reference_vpl(b, f->layers[LAYER_RADIANCE], cache, e);
+        if (expected) cell->a_indirect = light_error(b, f->layers[LAYER_INDIRECT], expected, BENCH_VPL_PIXELS, 3, true);
+        free(expected);
+    }
+    return e->code == ERR_NONE;
 }
 
 bool bench_measure(rig *r, const bench_scene *b, const bench_row *row, const char *cache, bench_cell *cell, error *e)
@@ -146,9 +180,7 @@ bool bench_measure(rig *r, const bench_scene *b, const bench_row *row, const cha
     cell->occlusion = sample_score(s, f.layers[LAYER_OCCLUSION], s->ao[0], s->ao[1], 1);
     if (cell->has_radiance) cell->radiance = sample_score(s, f.layers[LAYER_RADIANCE], s->direct[0], s->direct[1], 3);
     if (cell->has_indirect) cell->indirect = sample_score(s, f.layers[LAYER_INDIRECT], s->indirect[0], s->indirect[1], 3);
-    double *expected = bench_reference(b, row, cache, e);
-    if (expected) compare(b, f.layers[LAYER_OCCLUSION], expected, cell);
-    free(expected);
+    bool ok = compare(b, row, &f, cache, cell, e);
     rig_free_result(&f);
-    return e->code == ERR_NONE;
+    return ok;
 }

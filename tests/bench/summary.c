@@ -48,7 +48,7 @@ static double square(double x) { return x * x; }
 
 static void summarise_row(const bench_results *r, int row, int set, bench_summary *out)
 {
-    int n = 0, with_a = 0;
+    int n = 0, with_a = 0, with_radiance = 0, with_indirect = 0;
     *out = (bench_summary){0};
     for (int i = 0; i < r->scene_count; i++) {
         if (r->scenes[i].generated != (set == SET_GENERATED)) continue;
@@ -60,6 +60,8 @@ static void summarise_row(const bench_results *r, int row, int set, bench_summar
         out->radiance += c->has_radiance ? square(c->radiance.rmse / c->radiance.mean) : NAN;
         out->indirect += c->has_indirect ? square(c->indirect.rmse / c->indirect.mean) : NAN;
         if (c->has_a) out->a += square(c->a_rmse), with_a++;
+        if (c->has_a_radiance) out->a_radiance += square(c->a_radiance), with_radiance++;
+        if (c->has_a_indirect) out->a_indirect += square(c->a_indirect), with_indirect++;
         out->cpu += t.cpu / mp, out->wall += t.wall, out->all_cpu += all.cpu / mp;
         out->yards += bench_cell_yards(r, row, i, false), out->all_yards += bench_cell_yards(r, row, i, true);
     }
@@ -67,6 +69,8 @@ static void summarise_row(const bench_results *r, int row, int set, bench_summar
     if (n == 0) return;
     out->occlusion = sqrt(out->occlusion / n), out->radiance = sqrt(out->radiance / n), out->indirect = sqrt(out->indirect / n);
     out->a = with_a ? sqrt(out->a / with_a) : NAN;
+    out->a_radiance = with_radiance ? sqrt(out->a_radiance / with_radiance) : NAN;
+    out->a_indirect = with_indirect ? sqrt(out->a_indirect / with_indirect) : NAN;
     double *means[] = {&out->cpu, &out->wall, &out->all_cpu, &out->yards, &out->all_yards};
     for (size_t i = 0; i < sizeof means / sizeof *means; i++) *means[i] /= n;
 }

@@ -42,6 +42,8 @@ static void put_errors(FILE *f, const bench_cell *c)
     put(f, c->has_indirect, "%.6f", c->indirect.bias / c->indirect.mean);
     put(f, c->has_a, "%.6f", c->a_rmse);
     put(f, c->has_a, "%.6f", c->a_bias);
+    put(f, c->has_a_radiance, "%.6f", c->a_radiance);
+    put(f, c->has_a_indirect, "%.6f", c->a_indirect);
 }
 
 static void put_times(FILE *f, const bench_results *r, int row, int which)
@@ -68,7 +70,8 @@ bool bench_write_csv(const bench_results *r, const char *dir, error *e)
         if (!f) return false;
         fprintf(f,
                 "scene,method,samples,blur,occlusion_rmse,occlusion_bias,occlusion_p99,radiance_relative_rmse,"
-                "radiance_relative_bias,indirect_relative_rmse,indirect_relative_bias,a_rmse,a_bias%s\n",
+                "radiance_relative_bias,indirect_relative_rmse,indirect_relative_bias,a_rmse,a_bias,a_radiance_relative_rmse,a_"
+                "indirect_relative_rmse%s\n",
                 errors_only
                     ? ""
                     : ",cpu_ms_per_mp,wall_ms,yards,all_layers_cpu_ms_per_mp,all_layers_wall_ms,all_layers_yards,efficiency");
@@ -96,15 +99,15 @@ static void budget_of(const bench_row *row, char buf[48])
 
 static void summary_row(FILE *f, const bench_row *row, const bench_summary *s)
 {
-    char b[48], n[10][32];
+    char b[48], n[12][32];
     bool timed = row->kind == ROW_METHOD;
     budget_of(row, b);
     double yards = timed ? s->yards : NAN;
-    fprintf(f, "| %s%s | %s | %s | %s | %s | %s | %s | %s | %s | %s | %s |\n", row->name, s->front ? " \\*" : "", b,
+    fprintf(f, "| %s%s | %s | %s | %s | %s | %s | %s | %s | %s | %s | %s | %s | %s |\n", row->name, s->front ? " \\*" : "", b,
             figure(n[0], "%.3f", s->occlusion), figure(n[1], "%.3f", s->radiance), figure(n[2], "%.3f", s->indirect),
-            figure(n[3], "%.4f", s->a), figure(n[4], "%.0f", timed ? s->cpu : NAN), figure(n[5], "%.1f", timed ? s->wall : NAN),
-            figure(n[6], "%.2f", yards), figure(n[7], "%.2f", timed ? s->all_yards : NAN),
-            figure(n[8], "%.1f", 1.0 / (s->occlusion * s->occlusion * yards)));
+            figure(n[3], "%.4f", s->a), figure(n[9], "%.3f", s->a_radiance), figure(n[10], "%.3f", s->a_indirect),
+            figure(n[4], "%.0f", timed ? s->cpu : NAN), figure(n[5], "%.1f", timed ? s->wall : NAN), figure(n[6], "%.2f", yards),
+            figure(n[7], "%.2f", timed ? s->all_yards : NAN), figure(n[8], "%.1f", 1.0 / (s->occlusion * s->occlusion * yards)));
 }
 
 static void summary_table(FILE *f, const bench_results *r, int set, bool standard)
@@ -114,10 +117,9 @@ static void summary_table(FILE *f, const bench_results *r, int set, bool standar
     if (s[0].scenes == 0) return;
     fprintf(f, "\n### %s, %s\n\n", set == SET_SAMPLES ? "Rendered scenes" : "Generated scenes",
             standard ? "each method as it ships" : "every budget");
-    fprintf(
-        f,
-        "| method | samples | occlusion | radiance | indirect | against A | CPU ms/MP | wall ms | x yard | all layers, x yard | "
-        "efficiency |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+    fprintf(f, "| method | samples | occlusion | radiance | indirect | A: occlusion | A: radiance | A: indirect | CPU ms/MP | "
+               "wall ms | x yard | all layers, x yard | "
+               "efficiency |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     for (int i = 0; i < r->row_count; i++)
         if (!standard || r->rows[i].standard) summary_row(f, &r->rows[i], &s[i]);
 }
@@ -204,20 +206,20 @@ static void legend(FILE *f, const bench_results *r)
 {
     fprintf(f, "# %s\n\nMade by `%s` in %.0f s.\n\n", r->title, r->command, r->seconds);
     noise(f, r);
-    fprintf(
-        f,
-        "\nErrors are root mean squares over the scenes, free of the truth's own noise (mean((x - A)(x - B)) with two "
-        "independent "
-        "renders); radiance and indirect are relative to the mean of the truth. *Against A*: against the brute-force reference "
-        "that makes the method's own assumptions on the same layers, at %d stratified pixels a scene. Times are of the GL work "
-        "for "
-        "occlusion alone (CPU time of the process; no upload, no read-back), medians of %d interleaved rounds (one, above %d "
-        "samples), on the rendered scenes; *x yard* is in "
-        "units of the yardstick, a 64-tap (8 x 8) texelFetch box over an R32F texture of the frame's size, run in the same "
-        "round; "
-        "*all layers* adds radiance and, where the method has one, its bounce. Efficiency is 1 / (occlusion rmse^2 x yards). "
-        "\\*: on the Pareto front of error against time.\n",
-        BENCH_PIXELS, r->rounds, BENCH_LONG);
+    fprintf(f,
+            "\nErrors are root mean squares over the scenes, free of the truth's own noise (mean((x - A)(x - B)) with two "
+            "independent "
+            "renders); radiance and indirect are relative to the mean of the truth. *A*: against the brute-force reference "
+            "that makes the method's own assumptions on the same layers, at %d stratified pixels a scene (%d for the bounce of "
+            "virtual lights). Times are of the GL work "
+            "for "
+            "occlusion alone (CPU time of the process; no upload, no read-back), medians of %d interleaved rounds (one, above %d "
+            "samples), on the rendered scenes; *x yard* is in "
+            "units of the yardstick, a 64-tap (8 x 8) texelFetch box over an R32F texture of the frame's size, run in the same "
+            "round; "
+            "*all layers* adds radiance and, where the method has one, its bounce. Efficiency is 1 / (occlusion rmse^2 x yards). "
+            "\\*: on the Pareto front of error against time.\n",
+            BENCH_PIXELS, BENCH_VPL_PIXELS, r->rounds, BENCH_LONG);
     fprintf(f, "\nAlchemy's best single scale and contrast over these scenes: %.1f and %.2f.\n", r->alchemy_scale,
             r->alchemy_contrast);
     fprintf(f,

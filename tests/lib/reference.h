@@ -87,6 +87,7 @@ typedef struct reference_alchemy_options {
     double bias;         // a length
     tap_measure measure; // where an endless number of taps would fall: the chapter's spiral is uniform in radius and angle
     int radii, angles;   // quadrature; 0 = 128, 128
+    bool points;         // the surface of a pixel is the point in its middle, as the shader has it
 } reference_alchemy_options;
 
 // S = mean over the taps of 2 pi c max(0, N.w - bias) H(R - |w|) / max(c^2, w.w), c = 0.1 R, w from P to the recorded surface,
@@ -124,6 +125,9 @@ typedef struct reference_slice_options {
     double radius;    // cutoff: surface farther than this from P does not block; INFINITY is allowed
     double thickness; // bitmask only: length along the view ray, away from the eye; INFINITY is allowed
     int slices;       // uniform in angle around V; 0 = 128
+    // The surface of a pixel is the point in its middle, brought into the slice at its height over the tangent plane of P, and
+    // the line is looked at in steps of one pixel: what the shaders see with endless samples. Otherwise exact pieces of surface.
+    bool points;
 } reference_slice_options;
 
 // Cumulative cosine weight along a slice: integral of |sin t| cos(t - n) from 0 to t (THEORY.md 2).

@@ -129,7 +129,9 @@ reference_ssdo_result reference_ssdo(const layer *l, pixel p, const reference_ss
 static double alchemy_tap(const layer *l, const surfel *centre, double x, double y, const reference_alchemy_options *o)
 {
     vec3 at;
-    if (!layer_sample(l, x, y, &at)) return 0.0;
+    const surfel *surface = layer_sample(l, x, y, &at);
+    if (!surface) return 0.0;
+    if (o->points) at = surface->position;
     double c = 0.1 * o->radius;
     vec3 w = v3_sub(at, centre->position);
     double square = v3_dot(w, w), above = v3_dot(centre->normal, w) - o->bias;

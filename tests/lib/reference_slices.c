@@ -2,7 +2,8 @@
 //
 // A slice is the half plane pair through the view ray of P that holds a direction D across it. It contains the eye, so it shows
 // as a straight line on the screen, and what the layer records along that line is a chain of straight segments, one a pixel: the
-// pixel's tangent plane cut by the slice. Both methods look at these segments only.
+// pixel's tangent plane cut by the slice. Both methods look at these segments only; or, where the options say so, at the points
+// in the middle of the pixels.
 #include <stdlib.h>
 
 #include "reference.h"
@@ -17,6 +18,7 @@ typedef struct slice {
     const layer *layer;
     const reference_slice_options *options;
     vec3 position, to_eye, across; // P, V, D
+    vec3 normal;
     pixel start;
     double n;         // signed angle of the projected normal from V
     double weight;    // length of the projected normal
@@ -128,6 +130,56 @@ static double next_border(double from, double direction, int i)
     return ((direction > 0.0 ? i + 1 : i) - from) / direction;
 }
 
+// ---- pixels as points
+
+// The signed angle from V of a point (x, y) of the slice: x outwards along the tangent of P, y along the projected normal. What
+// would lie behind V on the other side counts as V.
+static double angle_over_tangent(const slice *s, int side, double x, double y)
+{
+    double t = s->n + side * atan2(x, y);
+    return side > 0 ? fmax(t, 0.0) : fmin(t, 0.0);
+}
+
+// The point of a pixel may lie beside the slice. It is put into it such that its distance from the tangent plane of P is kept: a
+// plane then stays a plane.
+static void add_point(slice *s, int side, vec3 point)
+{
+    const reference_slice_options *o = s->options;
+    vec3 w = v3_sub(point, s->position);
+    if (v3_length(w) >= o->radius) return;
+    double sine = sin(s->n), cosine = cos(s->n);
+    vec3 tangent = v3_scale(v3_sub(v3_scale(s->across, cosine), v3_scale(s->to_eye, sine)), side);
+    double x = v3_dot(w, tangent), y = v3_dot(w, s->normal) / s->weight, front = angle_over_tangent(s, side, x, y);
+    if (y <= 0.0) return;
+    if (!s->arcs) {
+        add_horizon(s, side, front, front);
+        return;
+    }
+    bool perspective = s->layer->camera.kind == CAMERA_PERSPECTIVE;
+    double eye = perspective ? v3_length(s->position) : 1.0, ex = -side * sine * eye, ey = cosine * eye;
+    double ax = perspective ? x - ex : -ex, ay = perspective ? y - ey : -ey, length = hypot(ax, ay);
+    double depth = fmin(o->thickness, 1e9 * o->radius);
+    double back = angle_over_tangent(s, side, x + depth * ax / length, y + depth * ay / length);
+    if (y + depth * ay / length <= 0.0) back = s->n + side * M_PI_2;
+    if (s->arc_count < MAX_ARCS)
+        s->arcs[s->arc_count++] = (arc){fmax(fmin(front, back), s->n - M_PI_2), fmin(fmax(front, back), s->n + M_PI_2)};
+}
+
+// The points of the pixels that lie a whole number of pixels from P along the line.
+static void march_points(slice *s, int side)
+{
+    double x = s->start.x + 0.5, y = s->start.y + 0.5, dx, dy;
+    screen_direction(s, side, &dx, &dy);
+    for (int i = 1;; i++) {
+        double px = x + i * dx, py = y + i * dy;
+        if (!(px >= 0.0 && py >= 0.0 && px < s->layer->width && py < s->layer->height) || out_of_reach(s, px, py)) return;
+        const surfel *surface = layer_at(s->layer, (int)px, (int)py);
+        if (surface) add_point(s, side, surface->position);
+    }
+}
+
+// ---- pixels as pieces of surface
+
 // Visits every pixel the line crosses, from P's own (which holds only P's tangent, the limit already set) to the frame's edge.
 static void march(slice *s, int side)
 {
@@ -178,7 +230,7 @@ static void aim(slice *s, vec3 normal, vec3 a, vec3 b, double phi)
 static double integrate(const layer *l, pixel p, const reference_slice_options *o, arc *arcs)
 {
     const surfel *centre = layer_at(l, p.x, p.y);
-    slice s = {.layer = l, .options = o, .position = centre->position, .start = p, .arcs = arcs};
+    slice s = {.layer = l, .options = o, .position = centre->position, .normal = centre->normal, .start = p, .arcs = arcs};
     s.to_eye = layer_to_eye(l, centre->position);
     vec3 a = v3_normalize(v3_cross(s.to_eye, fabs(s.to_eye.x) < 0.6 ? v3(1, 0, 0) : v3(0, 1, 0))), b = v3_cross(s.to_eye, a);
     int slices = o->slices > 0 ? o->slices : 128;
@@ -186,8 +238,7 @@ static double integrate(const layer *l, pixel p, const reference_slice_options *
     for (int i = 0; i < slices; i++) {
         aim(&s, centre->normal, a, b, M_PI * (i + 0.5) / slices);
         empty += s.weight * measure(s.low, s.high, s.n);
-        march(&s, 1);
-        march(&s, -1);
+        for (int side = 1; side >= -1; side -= 2) (o->points ? march_points : march)(&s, side);
         if (s.high > s.low) open += s.weight * open_weight(&s);
     }
     return empty > 0.0 ? open / empty : 1.0;

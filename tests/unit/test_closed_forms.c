@@ -1,7 +1,9 @@
-// Closed forms of THEORY.md 5.2 by every method that claims cosine-weighted visibility, with many samples: within 0.01.
+// Closed forms of THEORY.md 5.2 by every method that claims cosine-weighted visibility, with as many samples as 64 slices of 64
+// steps: within 0.01. The others against what they assume, on the same scenes.
 //
 // A method is held to what it assumes. VISIBILITY: the true open share. HORIZON: the same where nothing overhangs, and its own
-// brute-force reference where something does. POINTS: the share of the points of the hemisphere ball that the camera sees.
+// brute-force reference where something does. POINTS: the share of the points of the hemisphere ball that the camera sees. OWN:
+// its own brute-force reference.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,6 +15,7 @@
 
 #include <cmocka.h>
 
+#include "method_reference.h"
 #include "must.h"
 #include "reference.h"
 #include "rig.h"
@@ -22,14 +25,14 @@
 enum { WIDTH = 160, HEIGHT = 108, REACH = 6, STEP = 3, SAMPLES = 8192 }; // 64 x 64 on both sides
 static const double LIMIT = 0.01;
 
-typedef enum assumption { VISIBILITY, HORIZON, POINTS, NONE } assumption;
+typedef enum assumption { VISIBILITY, HORIZON, POINTS, OWN } assumption;
 
 static assumption assumption_of(const method *m)
 {
-    if (strncmp(m->weighting, "cosine", 6) != 0) return NONE;
+    if (strncmp(m->weighting, "cosine", 6) != 0) return OWN;
     if (strcmp(m->name, "gtao") == 0 || strcmp(m->name, "bitmask") == 0) return HORIZON; // tested with endless thickness
     if (strncmp(m->reach, "points", 6) == 0) return POINTS;
-    return strncmp(m->reach, "surfaces", 8) == 0 ? VISIBILITY : NONE;
+    return strncmp(m->reach, "surfaces", 8) == 0 ? VISIBILITY : OWN;
 }
 
 typedef struct fixture {
@@ -108,8 +111,10 @@ static double seen_share(const fixture *f, vec3 p)
     return (double)seen / (DIRECTIONS * DIRECTIONS * DISTANCES);
 }
 
-static double expected_at(const fixture *f, assumption a, pixel p, vec3 ground)
+static double expected_at(const fixture *f, const method *m, const pass_settings *set, pixel p, vec3 ground)
 {
+    assumption a = assumption_of(m);
+    if (a == OWN) return method_reference(&f->l, p, &(method_reference_options){.method = m, .set = set}).occlusion;
     if (a == POINTS) return seen_share(f, ground);
     if (a == HORIZON && f->overhang)
         return reference_horizon(&f->l, p, &(reference_slice_options){.radius = f->s.radius, .slices = 128});
@@ -117,7 +122,8 @@ static double expected_at(const fixture *f, assumption a, pixel p, vec3 ground)
 }
 
 // Mean error over the ground pixels around the scene's point.
-static double error_near_point(const fixture *f, assumption a, const float *occlusion, double *expected)
+static double error_near_point(const fixture *f, const method *m, const pass_settings *set, const float *occlusion,
+                               double *expected)
 {
     double x, y, z, sum = 0.0;
     int n = 0;
@@ -128,7 +134,7 @@ static double error_near_point(const fixture *f, assumption a, const float *occl
             pixel p = {(int)x + dx, (int)y + dy};
             hit h;
             if (p.y < 0 || p.y >= HEIGHT || !scene_at_pixel(&f->s, &f->v, p.x, p.y, &h) || h.position.z > 1e-6) continue;
-            double wanted = expected_at(f, a, p, h.position);
+            double wanted = expected_at(f, m, set, p, h.position);
             sum += (double)occlusion[p.y * WIDTH + p.x] - wanted;
             *expected += wanted;
             n++;
@@ -143,13 +149,13 @@ static bool check(rig *r, const fixture *f, const method *m)
     error e = {0};
     frame_result out;
     assumption a = assumption_of(m);
-    if (a == NONE) return true;
+    assert_true(a != OWN || method_has_reference(m));
     pass_settings set = rig_settings(m, f->s.radius);
     set.samples = SAMPLES;
     set.thickness = a == VISIBILITY ? m->thickness * f->s.radius : INFINITY;
     set.planes = true;
     must(rig_run(r, &f->gb, m, &set, 1 << LAYER_OCCLUSION, &out, &e), &e);
-    double expected, got = error_near_point(f, a, out.layers[LAYER_OCCLUSION], &expected);
+    double expected, got = error_near_point(f, m, &set, out.layers[LAYER_OCCLUSION], &expected);
     bool good = fabs(got) <= LIMIT;
     print_message("%-8s %-12s expected %.4f, error %+.4f%s\n", m->name, f->name, expected, got, good ? "" : "  <-- too large");
     rig_free_result(&out);

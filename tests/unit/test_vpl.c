@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "method_reference.h"
 #include "must.h"
 #include "near.h"
 #include "passes/vpl.h"
@@ -106,30 +107,6 @@ static void lights_follow_what_is_sent(void **state)
 
 // ---- the bounce
 
-// All pixels as senders, each a disc of its own area.
-static vec3 full_sum(const layer *l, pixel p, const float *radiance)
-{
-    const surfel *receiver = layer_at(l, p.x, p.y);
-    const camera *c = &l->camera;
-    vec3 light = v3(0, 0, 0);
-    double factors = 0.0;
-    for (int i = 0; i < ALL; i++) {
-        const surfel *s = layer_at(l, i % WIDTH, i / WIDTH);
-        if (!s || s == receiver) continue;
-        vec3 ray = v3_scale(s->position, 1.0 / s->position.z);
-        double area = s->position.z * s->position.z / (c->fx * c->fy * fabs(v3_dot(s->normal, ray)));
-        vec3 w = v3_sub(s->position, receiver->position);
-        double d = v3_length(w), received = v3_dot(receiver->normal, w) / d, sent = -v3_dot(s->normal, w) / d;
-        if (received <= 0.0 || sent <= 0.0) continue;
-        double f = area * received * sent / (M_PI * d * d + area);
-        const float *a = l->albedo + 4 * i, *r = radiance + 3 * i;
-        factors += f;
-        light =
-            v3_add(light, v3_scale(v3((double)a[0] * (double)r[0], (double)a[1] * (double)r[1], (double)a[2] * (double)r[2]), f));
-    }
-    return v3_scale(light, factors > 1.0 ? 1.0 / factors : 1.0);
-}
-
 typedef struct figures {
     double difference, gain; // relative rms; truth ~ gain
 } figures;
@@ -168,7 +145,7 @@ static void converges(void (*build)(scene *), double fov, double limit)
     int n = reference_pixels(&l, PIXELS, pixels);
     pass_settings set = rig_settings(method_find("ssdo"), 0.5);
     must(rig_run(&r, &gb, method_find("ssdo"), &set, NEEDED, &out, &e), &e);
-    for (int i = 0; i < n; i++) expected[i] = full_sum(&l, pixels[i], out.layers[LAYER_RADIANCE]);
+    for (int i = 0; i < n; i++) expected[i] = reference_vpl(&l, pixels[i], out.layers[LAYER_RADIANCE]);
     rig_free_result(&out);
     figures f = {0};
     double before = INFINITY;
