@@ -49,7 +49,7 @@ fails() { # PROGRAM[:FILTER]
     [ "$1" = "$2" ] && set -- "$1"
     program=$build/tests/test_$1
     shift
-    SSDO_SHADER_DIR=$dir/shaders timeout 600 "$program" "$@" >"$log" 2>&1 && return 1
+    SSDO_SHADER_DIR=$dir/shaders timeout 1800 "$program" "$@" >"$log" 2>&1 && return 1
     # A shader that no longer compiles would fail for the wrong reason, and so would a program that is not there.
     grep -q 'FAILED' "$log" && ! grep -q 'the driver refuses shader' "$log"
 }

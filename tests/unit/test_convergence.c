@@ -28,7 +28,7 @@ static void fixture_make(fixture *f, const listed_scene *from)
 // What arc has instead of a reference: its own limit, from other seeds than the one that is compared.
 static void expect_own_limit(rig *r, fixture *f, const method *m, pass_settings set)
 {
-    enum { SEEDS = 4 };
+    enum { SEEDS = 2 };
     error e = {0};
     for (int i = 0; i < f->count; i++) f->expected[i] = 0.0;
     set.samples = 4 * MOST;
