@@ -107,8 +107,8 @@ typedef unsigned long long cache_key;
 cache_key cache_start(const char *kind);
 cache_key cache_add(cache_key k, const void *data, size_t size);
 cache_key cache_add_file(cache_key k, const char *path); // the file's text
-bool cache_load(const char *dir, cache_key k, void *data, size_t size);
-void cache_store(const char *dir, cache_key k, const void *data, size_t size);
+bool bench_cache_load(const char *dir, cache_key k, void *data, size_t size);
+void bench_cache_store(const char *dir, cache_key k, const void *data, size_t size);
 
 // ---- the yardstick (yardstick.c): a 64-tap (8 x 8) texelFetch box in a fragment shader over an R32F texture of the frame's size
 

@@ -27,7 +27,7 @@ cache_key cache_add_file(cache_key k, const char *path)
 
 static void name_of(char *path, size_t size, const char *dir, cache_key k) { snprintf(path, size, "%s/%016llx", dir, k); }
 
-bool cache_load(const char *dir, cache_key k, void *data, size_t size)
+bool bench_cache_load(const char *dir, cache_key k, void *data, size_t size)
 {
     char path[512], more;
     name_of(path, sizeof path, dir, k);
@@ -39,7 +39,7 @@ bool cache_load(const char *dir, cache_key k, void *data, size_t size)
 }
 
 // A cache that cannot be written costs time, nothing else.
-void cache_store(const char *dir, cache_key k, const void *data, size_t size)
+void bench_cache_store(const char *dir, cache_key k, const void *data, size_t size)
 {
     char path[512], temp[560];
     name_of(path, sizeof path, dir, k);

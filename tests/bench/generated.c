@@ -70,10 +70,10 @@ static bool truth_make(truth_job *j, const char *cache, error *e)
     cache_key k = truth_key(j->b, j->s);
     for (int i = 0; i < 6; i++) *parts[i] = mem_zero(sizes[i], sizeof(float), e);
     if (e->code != ERR_NONE) return false;
-    bool known = cache_load(cache, k, blob, total * sizeof *blob);
+    bool known = bench_cache_load(cache, k, blob, total * sizeof *blob);
     if (!known) threads_for(threads_default(), (size_t)s->height, truth_row, j);
     for (int i = 0; i < 6; at += sizes[i], i++) memcpy(known ? *parts[i] : at, known ? at : *parts[i], sizes[i] * sizeof(float));
-    if (!known) cache_store(cache, k, blob, total * sizeof *blob);
+    if (!known) bench_cache_store(cache, k, blob, total * sizeof *blob);
     free(blob);
     return true;
 }

@@ -59,9 +59,9 @@ double *bench_reference(const bench_scene *b, const bench_row *row, const char *
     j.out = mem_pixels((size_t)b->pixel_count, 4 * sizeof *j.out, e);
     if (!j.out) return NULL;
     cache_key k = key_of(&j);
-    if (!cache_load(cache, k, j.out, size)) {
+    if (!bench_cache_load(cache, k, j.out, size)) {
         threads_for(threads_default(), (size_t)b->pixel_count, one_pixel, &j);
-        cache_store(cache, k, j.out, size);
+        bench_cache_store(cache, k, j.out, size);
     }
     return j.out;
 }
@@ -81,9 +81,9 @@ double *bench_reference_vpl(const bench_scene *b, const float *radiance, const c
     if (!j.out) return NULL;
     cache_key k = add_scene(cache_start("vpl"), b);
     k = cache_add(cache_add(k, radiance, 3 * n * sizeof *radiance), b->gb.albedo, 4 * n * sizeof(float));
-    if (!cache_load(cache, k, j.out, size)) {
+    if (!bench_cache_load(cache, k, j.out, size)) {
         threads_for(threads_default(), BENCH_VPL_PIXELS, one_receiver, &j);
-        cache_store(cache, k, j.out, size);
+        bench_cache_store(cache, k, j.out, size);
     }
     return j.out;
 }
