@@ -12,7 +12,10 @@ figures() { # bench.md: what the README shows of it
 
 paste_into() { # NAME FILE
     grep -q "^<!-- $1 -->" README.md || { echo "README.md has no marker <!-- $1 -->" >&2; exit 1; }
-    figures "$2" >"$build/readme.part"
+    {
+        [ "$1" = bench ] && printf '![Error against time of every method, with the Pareto front](samples/pictures/speed-error.png)\n\n'
+        figures "$2"
+    } >"$build/readme.part"
     awk -v name="$1" -v part="$build/readme.part" '
         $0 == "<!-- /" name " -->" {skip = 0}
         !skip {print}
