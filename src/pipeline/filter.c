@@ -90,15 +90,21 @@ static bool run_passes(pass_context *c, const plan *p, error *e)
 }
 
 // A layer never holds NaN or infinity, whatever happened before; occlusion stays in 0..1 and light is not negative.
-static void sanitise(layer_id l, float *v, size_t n)
+static inline float sane(float v, bool share, bool light)
+{
+    if (!(fabsf(v) <= 3e38f)) v = share ? 1.0f : isnan(v) ? 0.0f : copysignf(3e38f, v);
+    if (share) return v < 0.0f ? 0.0f : v > 1.0f ? 1.0f : v;
+    return light && v < 0.0f ? 0.0f : v;
+}
+
+// Leaves the first `channels` of every `stored` components, in place and in one sweep: the picture is larger than any cache.
+static void sanitise(layer_id l, float *v, size_t pixels, size_t stored, size_t channels)
 {
     bool share = l == LAYER_OCCLUSION || l == LAYER_VISIBILITY,
          light = l == LAYER_RADIANCE || l == LAYER_INDIRECT || l == LAYER_SPECULAR;
-    for (size_t i = 0; i < n; i++) {
-        if (!(fabsf(v[i]) <= 3e38f)) v[i] = share ? 1.0f : isnan(v[i]) ? 0.0f : copysignf(3e38f, v[i]);
-        if (share) v[i] = v[i] < 0.0f ? 0.0f : v[i] > 1.0f ? 1.0f : v[i];
-        if (light && v[i] < 0.0f) v[i] = 0.0f;
-    }
+    float *to = v;
+    for (size_t i = 0; i < pixels; i++, v += stored)
+        for (size_t k = 0; k < channels; k++) *to++ = sane(v[k], share, light);
 }
 
 // Bent normals: unit length, in the space of the file's normals. Where nothing is open the normal stands in.
@@ -121,9 +127,7 @@ static bool read_back(const gpu_image *image, layer_id l, frame_result *r, error
     float *v = mem_pixels(pixels * stored, sizeof *v, e);
     if (!v) return false;
     gpu_image_download(image, v);
-    for (size_t i = 0; stored != channels && i < pixels; i++)
-        for (size_t k = 0; k < channels; k++) v[i * channels + k] = v[i * stored + k];
-    sanitise(l, v, pixels * channels);
+    sanitise(l, v, pixels, stored, channels);
     if (l == LAYER_BENT) point_along(&r->gb, v, pixels);
     r->layers[l] = v;
     return true;
