@@ -57,6 +57,8 @@ help:
 	@echo 'make check    install what is missing, build, run all tests'
 	@echo 'make check-farm    a sequence by Slurm, Open Job Description and GNU parallel against one command'
 	@echo 'make check-hosts   our output in Blender, oiiotool, exrmultipart and ImageMagick'
+	@echo 'make check-hard    the hard cases, all of them; check-threads: the batch under the thread sanitizer'
+	@echo 'make fuzz FUZZ_SECONDS=60   random files and frame ranges, by libFuzzer'
 	@echo 'make bench    error against time of every method (bench-unseen: on scenes rendered afresh)'
 	@echo 'make bench-frame   cost of a whole frame beside copying its file (bench-frame-readme: into README.md)'
 	@echo 'make all | lint | format | install PREFIX= DESTDIR= | uninstall | clean'
@@ -117,8 +119,32 @@ check: deps-check
 .PHONY: unit hard check-hard
 check-hard: deps-check
 	@$(MAKE) $(JOBS) --no-print-directory all hard
-	@SSDO_HARD=whole sh tests/run.sh $(BUILD) $(HARD)
+	@SSDO_HARD=whole SSDO_SCRIPTS='tests/hard/*.sh' sh tests/run.sh $(BUILD) $(HARD)
 hard: $(HARD)
+
+# The measured tables of the hard cases: tests/hard/RESULTS.md.
+.PHONY: hard-tables
+hard-tables: all hard
+	@rm -rf $(BUILD)/tables && mkdir -p $(BUILD)/tables
+	@for t in $(HARD); do SSDO_TABLES=$(BUILD)/tables $$t >/dev/null 2>&1 || echo "failed: $$t"; done
+	@cat tests/hard/results-head.md $(BUILD)/tables/*.md >tests/hard/RESULTS.md
+
+# The batch path under the thread sanitizer.
+.PHONY: check-threads
+check-threads: deps-check
+	@$(MAKE) $(JOBS) --no-print-directory BUILD=$(BUILD)/tsan SANITIZE=thread all
+	@sh tests/sanitize/threads.sh $(BUILD)/tsan
+
+# Random input to the readers, by libFuzzer (tests/fuzz): make fuzz FUZZ_SECONDS=3600.
+FUZZ_SECONDS ?= 60
+.PHONY: fuzz
+fuzz: deps
+	@sh tests/deps.sh clang libclang-rt-14-dev openimageio-tools
+	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/tests/make_corpus
+	@sh tests/fuzz/run.sh $(BUILD) $(FUZZ_SECONDS)
+$(BUILD)/tests/make_corpus: $(BUILD)/tests/fuzz/make_corpus.o $(TESTLIB) $(BUILD)/libssdo.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
 unit: $(UNIT) $(HARD)
 
 # Real schedulers on this machine (tests/farm/check.sh); what it starts, it stops.

@@ -24,6 +24,6 @@ one() {
 }
 
 for t in "$@"; do one "$(basename "$t")" "$t"; done
-for t in tests/golden/*.sh tests/hard/*.sh; do [ -e "$t" ] && one "$t" sh "$t"; done
+for t in ${SSDO_SCRIPTS-tests/golden/*.sh tests/hard/*.sh}; do [ -e "$t" ] && one "$t" sh "$t"; done
 echo "$passed passed, $failed failed, $skipped skipped"
 [ "$failed" = 0 ]

@@ -138,7 +138,7 @@ static void warnings_say_the_share(void **state)
                 fail_msg("%g in %s raises no warning", (double)cases[i].value, channels[cases[i].channel]);
             frame_free(&r);
         }
-    printf("figure: a defect in 3 %% of the pixels is said once, with its share (%s)\n", h->rig.log.warnings[0]);
+    printf("figure: a defect in 3 %% of the pixels is said once, with its share, for positions, normals and colours\n");
 }
 
 // --- normals ---
@@ -193,9 +193,8 @@ static void wrong_normals(void **state)
                  {"a third zero", some_zero, 0.05}, {"lengths .05 and 20", lengthened, 1e-6}, {"encoded 0..1", encoded, 1e-3},
                  {"NaN", not_numbers, 0.05}};
     hard *h = *state;
-    FILE *t = hard_table(
-        "30-normals",
-        "**Normals** of a wrong kind: rms change of `occlusion` away from edges (zero and NaN are rebuilt from depth)");
+    FILE *t = hard_table("30-normals", "**Normals** of a wrong kind: rms change of `occlusion` away from edges (a third flipped, "
+                                       "zero and NaN: rebuilt from depth, with a warning)");
     hard_cell(t, "| method |");
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) hard_cell(t, " %s |", kinds[k].name);
     hard_cell(t, "\n| --- | --- | --- | --- | --- | --- | --- | --- |\n");
