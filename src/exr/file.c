@@ -37,8 +37,7 @@ bool core_log_report(core_log *log, exr_result_t code, error_code kind, const ch
     pthread_mutex_lock(&log->lock);
     log->armed = false;
     const char *text = log->text[0] ? log->text : exr_get_default_error_message(code);
-    // The library's header parser says that memory ran out and then returns another code.
-    if (code == EXR_ERR_OUT_OF_MEMORY || strstr(text, exr_get_default_error_message(EXR_ERR_OUT_OF_MEMORY)))
+    if (code == EXR_ERR_OUT_OF_MEMORY)
         err_set(e, ERR_MEMORY, path, NULL, "out of memory; try fewer threads or frames in flight");
     else
         err_set(e, kind, path, NULL, "%s (%s)", what, text);
@@ -51,7 +50,16 @@ bool core_log_report(core_log *log, exr_result_t code, error_code kind, const ch
 // The library reads a few bytes beyond a buffer's end in damaged PIZ blocks (fixed after 3.1.5): they are there, and zero.
 enum { SLACK = 64 };
 
-static void *core_allocate(size_t size) { return size > SIZE_MAX - SLACK ? NULL : mem_zero(size + SLACK, 1, NULL); }
+// The library's header parser passes over an attribute for which there was no memory and makes up a value for it, so we remember
+// that it was refused some. It allocates on the thread that opens, and gives its allocator no context.
+static _Thread_local bool starved;
+
+static void *core_allocate(size_t size)
+{
+    void *p = size > SIZE_MAX - SLACK ? NULL : mem_zero(size + SLACK, 1, NULL);
+    starved = starved || !p;
+    return p;
+}
 static void core_free(void *p) { free(p); }
 
 static bool open_core(exr_reader *r, error *e)
@@ -67,8 +75,10 @@ static bool open_core(exr_reader *r, error *e)
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
     core_log_arm(&r->log);
     exr_context_t core = NULL;
+    starved = false;
     exr_result_t rv = exr_start_read(&core, r->file.path, &init);
     r->file.core = core;
+    if (starved) rv = EXR_ERR_OUT_OF_MEMORY;
     if (rv != EXR_ERR_SUCCESS)
         return core_log_report(&r->log, rv, ERR_INPUT, r->file.path,
                                "has a header that cannot be used; render it or copy it again", e);

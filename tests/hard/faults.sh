@@ -158,21 +158,36 @@ if ${CC:-gcc} -shared -fPIC -O1 -o "$dir/fault.so" "$dir/fault.c" -ldl 2>"$dir/e
     inject context 5 "OpenGL 4.5"
     inject lost 5 "lost"
     inject lost 5 "lost" 3
-    inject memory 6 "memory" 4
-    inject memory 6 "memory" 9
+    # At any question for GL's errors. Where the answer only means that a cached program does not fit, the run completes.
+    for n in 1 2 4 6 7 8 9 10 12; do
+        rm -f "$dir/out.exr"
+        SSDO_FAULT=memory SSDO_FAULT_AT=$n LD_PRELOAD="$dir/fault.so" "$SSDO" $args -o "$dir/out.exr" 2>"$dir/err" >/dev/null
+        code=$?
+        [ $code = 0 ] && whole "$dir/out.exr" "GL out of memory at $n" && continue
+        failed 6 "memory" "GL out of memory at $n"
+        [ ! -e "$dir/out.exr" ] && [ -z "$(find "$dir" -name '.*tmp')" ] || die "GL out of memory: something is left"
+        targets=$((targets + 1))
+    done
 fi
 
 # --- memory: the n-th allocation fails ---
-memory=0 n=1 step=1
-[ "${SSDO_HARD-}" = whole ] || step=17
-while :; do
+# An allocation that only a cache needed does not stop the run; the last one has been passed when many in a row succeed.
+memory=0 spared=0 row=0 n=1 step=1 enough=120
+[ "${SSDO_HARD-}" = whole ] || { step=17 enough=5; }
+"$SSDO" $args --layers occlusion,radiance -o "$dir/two.exr" 2>"$dir/err" || die "the clean run"
+while [ $row -lt $enough ]; do
     rm -f "$dir/out.exr"
     SSDO_FAIL_ALLOC=$n "$SSDO" $args --layers occlusion,radiance -o "$dir/out.exr" 2>"$dir/err" >/dev/null
     code=$?
-    [ $code = 0 ] && break
+    if [ $code = 0 ]; then
+        cmp -s "$dir/out.exr" "$dir/two.exr" || die "allocation $n: another result"
+        spared=$((spared + 1)) row=$((row + 1)) n=$((n + step))
+        continue
+    fi
+    row=0
     failed 6 "memory" "allocation $n"
     [ ! -e "$dir/out.exr" ] && [ -z "$(find "$dir" -name '.*tmp')" ] || die "allocation $n: something is left"
     memory=$((memory + 1)) n=$((n + step))
     [ $n -gt 20000 ] && die "more than 20000 allocations"
 done
-echo "figure: $full full disks, $targets faults of target and GL, $memory failed allocations: 0 partial outputs, 0 lost inputs"
+echo "figure: $full full disks, $targets faults of target and GL, $memory failed allocations ($((spared - row)) more did not matter): 0 partial outputs, 0 lost inputs"
