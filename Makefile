@@ -60,6 +60,7 @@ help:
 	@echo 'make check-hard    the hard cases, all of them; check-threads: the batch under the thread sanitizer'
 	@echo 'make fuzz FUZZ_SECONDS=60   random files and frame ranges, by libFuzzer'
 	@echo 'make bench    error against time of every method (bench-unseen: on scenes rendered afresh)'
+	@echo 'make bench-paper   cost of ssdo'\''s light and bounce beside the paper, of s3ho beside hemisphere'
 	@echo 'make bench-frame   cost of a whole frame beside copying its file (bench-frame-readme: into README.md)'
 	@echo 'make all | lint | format | install PREFIX= DESTDIR= | uninstall | clean'
 
@@ -170,6 +171,14 @@ UNSEEN_SPP ?= 48
 BENCH_CACHE ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/ssdo-bench
 $(BUILD)/bench-program: $(BENCH_OBJ) $(TESTLIB) $(BUILD)/libssdo.a
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lembree3 $(PKG_LIBS)
+
+# What ssdo's light and bounce cost over its occlusion, beside the paper's figures; s3ho over hemisphere.
+$(BUILD)/bench-paper: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/paper.o $(TESTLIB) $(BUILD)/libssdo.a
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lembree3 $(PKG_LIBS)
+.PHONY: bench-paper
+bench-paper: deps-bench
+	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench-paper
+	@$(BUILD)/bench-paper
 
 .PHONY: bench bench-unseen bench-readme mutate truth
 bench: deps-bench

@@ -1,5 +1,5 @@
 #version 450 core
-// lint: VISIBILITY RADIANCE INDIRECT SH BENT | NOTHING
+// lint: VISIBILITY RADIANCE INDIRECT SH BENT BANDS3 | NOTHING
 // Layers of pixels that a surface covers only in part and whose centre missed it (no position): taken from the nearest pixel with a
 // surface, of those equally near the one with the most similar normal (DESIGN.md, Edges).
 #include "include/frame.glsl"
@@ -24,6 +24,10 @@ layout(rgba32f, binding = 10) uniform image2D bent_image;
 layout(rgba32f, binding = 7) uniform image2D sh0_image;
 layout(rgba32f, binding = 8) uniform image2D sh1_image;
 layout(rgba32f, binding = 9) uniform image2D sh2_image;
+#ifdef BANDS3
+layout(rgba32f, binding = 11) uniform image2D sh3_image;
+layout(rgba32f, binding = 12) uniform image2D sh4_image;
+#endif
 #endif
 
 const int REACH = 2;
@@ -63,5 +67,9 @@ void main() {
     imageStore(sh0_image, p, imageLoad(sh0_image, from));
     imageStore(sh1_image, p, imageLoad(sh1_image, from));
     imageStore(sh2_image, p, imageLoad(sh2_image, from));
+#ifdef BANDS3
+    imageStore(sh3_image, p, imageLoad(sh3_image, from));
+    imageStore(sh4_image, p, imageLoad(sh4_image, from));
+#endif
 #endif
 }

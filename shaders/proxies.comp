@@ -1,5 +1,5 @@
 #version 450 core
-// lint: RADIANCE VISIBILITY BENT | RADIANCE VECTOR | VECTOR | BOUNCE | NOTHING
+// lint: RADIANCE VISIBILITY BENT | RADIANCE VECTOR | VECTOR BANDS3 | BOUNCE | NOTHING
 // Spheres that the camera does not see, each a cone of directions, exactly clipped by the receiver's horizon. Where cones overlap the
 // later one counts only for the rest: F_i is the cosine-weighted share of the hemisphere in cone i, times 1 - the share of the cone that
 // lies in cone j, for each j before i. The whole is taken to be independent of what the method found:
@@ -38,6 +38,10 @@ layout(rgba32f, binding = 6) uniform image2D bent_image;
 layout(rgba32f, binding = 7) uniform image2D sh0_image;
 layout(rgba32f, binding = 8) uniform image2D sh1_image;
 layout(rgba32f, binding = 9) uniform image2D sh2_image;
+#ifdef BANDS3
+layout(rgba32f, binding = 10) uniform image2D sh3_image;
+layout(rgba32f, binding = 11) uniform image2D sh4_image;
+#endif
 #endif
 
 const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
@@ -145,6 +149,10 @@ void apply(ivec2 p, vec3 P, vec3 N) {
     imageStore(sh0_image, p, open * imageLoad(sh0_image, p));
     imageStore(sh1_image, p, open * imageLoad(sh1_image, p));
     imageStore(sh2_image, p, open * imageLoad(sh2_image, p));
+#ifdef BANDS3
+    imageStore(sh3_image, p, open * imageLoad(sh3_image, p));
+    imageStore(sh4_image, p, open * imageLoad(sh4_image, p));
+#endif
 #endif
 #ifdef VISIBILITY
     imageStore(visibility_image, p, open_luminance * imageLoad(visibility_image, p));

@@ -1,6 +1,7 @@
 #version 450 core
+// lint: NOTHING | BANDS3
 // Screen-space spherical harmonics occlusion (Herholz et al. 2011): per pixel the SH vector of the cosine-weighted visibility,
-//   o_lm = (2 pi / N) sum V(w) max(0, n.w) Y_lm(w),   l <= 2, in the axes of the world
+//   o_lm = (2 pi / N) sum V(w) max(0, n.w) Y_lm(w),   l <= 2 (BANDS3: 3), in the axes of the world
 // divided by (2 / N) sum max(0, n.w), which makes an open surface's o_00 exact. V is SSDO's point test. The samples come from 16 sets,
 // one for each pixel of a 4 x 4 pattern; together they are one stratified set (s3ho_filter.comp brings them together).
 #include "include/frame.glsl"
@@ -14,13 +15,17 @@ layout(std140, binding = 1) uniform Params {
     int samples;     // N
     int seed;
     vec4 world_from_camera[3]; // rows
-    vec4 bands;                // factors of l = 0, 1, 2: the zonal Gaussian low-pass exp(-sigma^2 l (l + 1) / 2)
+    vec4 bands;                // factors of l = 0, 1, 2, 3: the zonal Gaussian low-pass exp(-sigma^2 l (l + 1) / 2)
 } params;
 
-// Coefficients 0 1 2 | 3 4 5 | 6 7 8; the first image's w is the cosine-weighted open share, o_00 / (pi Y_00).
+// Coefficients 0 1 2 | 3 4 5 | 6 7 8 | 9 10 11 12 | 13 14 15; the first image's w is the cosine-weighted open share, o_00 / (pi Y_00).
 layout(rgba32f, binding = 2) writeonly uniform image2D sh0_image;
 layout(rgba32f, binding = 3) writeonly uniform image2D sh1_image;
 layout(rgba32f, binding = 4) writeonly uniform image2D sh2_image;
+#ifdef BANDS3
+layout(rgba32f, binding = 5) writeonly uniform image2D sh3_image;
+layout(rgba32f, binding = 6) writeonly uniform image2D sh4_image;
+#endif
 
 // Which of the 16 sets a pixel has: neighbours far apart (the 4 x 4 ordered dither matrix).
 int set_of(ivec2 p) {
@@ -33,16 +38,21 @@ vec3 to_world(vec3 d) {
                 dot(params.world_from_camera[2].xyz, d));
 }
 
-void store(ivec2 p, float o[9], float open) {
+void store(ivec2 p, float o[SH_COUNT], float open) {
     imageStore(sh0_image, p, vec4(o[0], o[1], o[2], open));
     imageStore(sh1_image, p, vec4(o[3], o[4], o[5], 0.0));
     imageStore(sh2_image, p, vec4(o[6], o[7], o[8], 0.0));
+#ifdef BANDS3
+    imageStore(sh3_image, p, vec4(o[9], o[10], o[11], o[12]));
+    imageStore(sh4_image, p, vec4(o[13], o[14], o[15], 0.0));
+#endif
 }
 
 void main() {
     ivec2 p = this_pixel();
     if (!in_tile(p)) return;
-    float o[9] = float[](0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), y[9];
+    float o[SH_COUNT], y[SH_COUNT];
+    for (int c = 0; c < SH_COUNT; c++) o[c] = 0.0;
     float depth = depth_at(p);
     if (depth == 0.0) {
         store(p, o, 1.0);
@@ -62,8 +72,8 @@ void main() {
         if (behind > 0.0 && behind <= params.thickness) continue;
         open += cosine;
         sh_basis(to_world(w), y);
-        for (int c = 0; c < 9; c++) o[c] += cosine * y[c];
+        for (int c = 0; c < SH_COUNT; c++) o[c] += cosine * y[c];
     }
-    for (int c = 0; c < 9; c++) o[c] *= PI / total * (c == 0 ? params.bands.x : c < 4 ? params.bands.y : params.bands.z);
+    for (int c = 0; c < SH_COUNT; c++) o[c] *= PI / total * band_of(c, params.bands);
     store(p, o, open / total);
 }

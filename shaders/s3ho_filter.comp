@@ -1,4 +1,5 @@
 #version 450 core
+// lint: NOTHING | BANDS3
 // Brings the 16 sample sets of the 4 x 4 pattern together: the mean of the four 4 x 4 windows that hold the pixel, so every set has the
 // same weight where nothing interrupts; taps across an edge lose theirs (plane distance and normals, as in blur.frag). The
 // coefficients are linear in visibility, so the filter acts on them and not on light.
@@ -10,11 +11,20 @@ layout(rgba32f, binding = 4) readonly uniform image2D sh2_in;
 layout(rgba32f, binding = 5) writeonly uniform image2D sh0_out;
 layout(rgba32f, binding = 6) writeonly uniform image2D sh1_out;
 layout(rgba32f, binding = 7) writeonly uniform image2D sh2_out;
+#ifdef BANDS3
+layout(rgba32f, binding = 8) readonly uniform image2D sh3_in;
+layout(rgba32f, binding = 9) readonly uniform image2D sh4_in;
+layout(rgba32f, binding = 10) writeonly uniform image2D sh3_out;
+layout(rgba32f, binding = 11) writeonly uniform image2D sh4_out;
+#endif
 
 void main() {
     ivec2 p = this_pixel();
     if (!in_tile(p)) return;
     vec4 c0 = imageLoad(sh0_in, p), c1 = imageLoad(sh1_in, p), c2 = imageLoad(sh2_in, p);
+#ifdef BANDS3
+    vec4 c3 = imageLoad(sh3_in, p), c4 = imageLoad(sh4_in, p), s3 = vec4(0.0), s4 = vec4(0.0);
+#endif
     float depth = depth_at(p);
     vec3 P = position_of(p, depth), N = normal_at(p);
     float scale = depth == 0.0 ? 0.0 : 1.0 / footprint(depth);
@@ -33,9 +43,17 @@ void main() {
             s0 += w * (imageLoad(sh0_in, q) - c0);
             s1 += w * (imageLoad(sh1_in, q) - c1);
             s2 += w * (imageLoad(sh2_in, q) - c2);
+#ifdef BANDS3
+            s3 += w * (imageLoad(sh3_in, q) - c3);
+            s4 += w * (imageLoad(sh4_in, q) - c4);
+#endif
             total += w;
         }
     imageStore(sh0_out, p, c0 + s0 / total);
     imageStore(sh1_out, p, c1 + s1 / total);
     imageStore(sh2_out, p, c2 + s2 / total);
+#ifdef BANDS3
+    imageStore(sh3_out, p, c3 + s3 / total);
+    imageStore(sh4_out, p, c4 + s4 / total);
+#endif
 }

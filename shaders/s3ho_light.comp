@@ -1,21 +1,25 @@
 #version 450 core
-// lint: LIGHT VISIBILITY | NOTHING
+// lint: LIGHT VISIBILITY | LIGHT VISIBILITY BANDS3 | NOTHING
 // From the SH vector o of cosine-weighted visibility to the layers:
 //   radiance   = (1 / pi) sum o_lm L_lm           L_lm: the environment's plain radiance coefficients in the axes of o
-//   visibility = luminance of that over its value with nothing in the way (o_lm = A_l Y_lm(n), A = pi, 2 pi / 3, pi / 4)
+//   visibility = luminance of that over its value with nothing in the way (o_lm = A_l Y_lm(n), A = pi, 2 pi / 3, pi / 4, 0)
 #include "include/frame.glsl"
 #include "include/sh.glsl"
 
 layout(std140, binding = 1) uniform Params {
     vec4 world_from_camera[3]; // rows
-    vec4 bands;                // A_0, A_1, A_2, low-pass included
-    vec4 light[9];             // rgb L_lm
+    vec4 bands;                // A_0, A_1, A_2, A_3, low-pass included
+    vec4 light[16];            // rgb L_lm
 } params;
 
 layout(rgba32f, binding = 2) readonly uniform image2D sh0_image;
 layout(rgba32f, binding = 3) readonly uniform image2D sh1_image;
 layout(rgba32f, binding = 4) readonly uniform image2D sh2_image;
 layout(r32f, binding = 5) writeonly uniform image2D occlusion_image;
+#ifdef BANDS3
+layout(rgba32f, binding = 8) readonly uniform image2D sh3_image;
+layout(rgba32f, binding = 9) readonly uniform image2D sh4_image;
+#endif
 #ifdef LIGHT
 layout(rgba32f, binding = 6) writeonly uniform image2D radiance_image;
 #endif
@@ -23,17 +27,17 @@ layout(rgba32f, binding = 6) writeonly uniform image2D radiance_image;
 layout(r32f, binding = 7) writeonly uniform image2D visibility_image;
 #endif
 
-vec3 lit(float o[9]) {
+vec3 lit(float o[SH_COUNT]) {
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < 9; i++) sum += o[i] * params.light[i].rgb;
+    for (int i = 0; i < SH_COUNT; i++) sum += o[i] * params.light[i].rgb;
     return max(sum / PI, vec3(0.0)); // few bands ring below zero
 }
 
 vec3 open_light(vec3 n) {
     vec3 d = vec3(dot(params.world_from_camera[0].xyz, n), dot(params.world_from_camera[1].xyz, n), dot(params.world_from_camera[2].xyz, n));
-    float y[9];
+    float y[SH_COUNT];
     sh_basis(d, y);
-    for (int i = 0; i < 9; i++) y[i] *= i == 0 ? params.bands.x : i < 4 ? params.bands.y : params.bands.z;
+    for (int i = 0; i < SH_COUNT; i++) y[i] *= band_of(i, params.bands);
     return lit(y);
 }
 
@@ -44,7 +48,13 @@ void main() {
     bool surface = depth_at(p) != 0.0;
     imageStore(occlusion_image, p, vec4(surface ? a.w : 1.0));
 #if defined(LIGHT) || defined(VISIBILITY)
-    vec3 radiance = surface ? lit(float[](a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z)) : vec3(0.0);
+#ifdef BANDS3
+    vec4 d = imageLoad(sh3_image, p), e = imageLoad(sh4_image, p);
+    float o[SH_COUNT] = float[](a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, d.x, d.y, d.z, d.w, e.x, e.y, e.z);
+#else
+    float o[SH_COUNT] = float[](a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z);
+#endif
+    vec3 radiance = surface ? lit(o) : vec3(0.0);
 #endif
 #ifdef LIGHT
     imageStore(radiance_image, p, vec4(radiance, 0.0));

@@ -24,6 +24,7 @@ void options_defaults(options *o)
         .contrast = 1,
         .bounce_strength = 1,
         .vpl_count = 512,
+        .sh_bands = 2,
         .env_scale = 1,
         .env_frame = "world",
         .env_lod = -1,

@@ -35,6 +35,7 @@ typedef struct options {
     int samples;       // 0 = the method's default at that quality
     double thickness;  // share of the radius; < 0 auto, INFINITY for inf
     double angle_bias; // degrees
+    int sh_bands;      // highest l
     double sh_sigma;   // radians
     bool from_sh;
     int blur; // radius in pixels; 0 none; -1 the method's default

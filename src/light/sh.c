@@ -36,25 +36,26 @@ void sh_basis(vec3 d, int bands, double y[SH_MAX])
     }
 }
 
-// Bands up to 2 are polynomials of degree 2, their products of degree 4: five nodes in z and eight longitudes integrate them
+// Bands up to l = 3 are polynomials of degree 3, their products of degree 6: five nodes in z and eight longitudes integrate them
 // exactly.
-void sh_turn(const double in[][3], mat3 turn, double out[9][3])
+void sh_turn(const double in[][3], mat3 turn, int bands, double out[][3])
 {
     static const double node[5] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
     static const double weight[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                                      0.2369268850561891};
     enum { LONGITUDES = 8 };
-    memset(out, 0, 9 * sizeof *out);
+    const int n = bands * bands;
+    memset(out, 0, (size_t)n * sizeof *out);
     for (int k = 0; k < 5 * LONGITUDES; k++) {
         double z = node[k / LONGITUDES], r = sqrt(1 - z * z), phi = 2 * M_PI * (k % LONGITUDES) / LONGITUDES;
         double from[SH_MAX], to[SH_MAX], solid_angle = weight[k / LONGITUDES] * 2 * M_PI / LONGITUDES;
         vec3 d = v3(r * cos(phi), r * sin(phi), z);
-        sh_basis(d, 3, to);
-        sh_basis(m3_apply(turn, d), 3, from);
+        sh_basis(d, bands, to);
+        sh_basis(m3_apply(turn, d), bands, from);
         for (int c = 0; c < 3; c++) {
             double value = 0;
-            for (int i = 0; i < 9; i++) value += in[i][c] * from[i];
-            for (int i = 0; i < 9; i++) out[i][c] += solid_angle * value * to[i];
+            for (int i = 0; i < n; i++) value += in[i][c] * from[i];
+            for (int i = 0; i < n; i++) out[i][c] += solid_angle * value * to[i];
         }
     }
 }

@@ -19,9 +19,9 @@ bool sh_project(const float *rgba, int width, int height, int threads, double sh
 // Y_lm(d) for l < bands (bands 1..4); d is a unit vector.
 void sh_basis(vec3 d, int bands, double y[SH_MAX]);
 
-// The coefficients (l <= 2) of the function d -> f(turn d), f given by its own: radiance coefficients brought into the axes that
-// `turn` (a rotation, or one with a mirror) takes to those of `in`. Exact.
-void sh_turn(const double in[][3], mat3 turn, double out[9][3]);
+// The coefficients (l < bands, at most 4) of the function d -> f(turn d), f given by its own: radiance coefficients brought into
+// the axes that `turn` (a rotation, or one with a mirror) takes to those of `in`. Exact.
+void sh_turn(const double in[][3], mat3 turn, int bands, double out[][3]);
 
 // E(n) / pi, channel-wise, from radiance coefficients (l <= 2): the cosine-convolved sum A_l L_lm Y_lm(n) / pi with A = pi,
 // 2pi/3, pi/4.

@@ -24,17 +24,18 @@ static bool make_tiles(const pass_context *c, gpu_tiles *tiles, error *e)
 bool pass_edges(pass_context *c, error *e)
 {
     char defines[128];
-    snprintf(defines, sizeof defines, "%s%s%s%s%s", c->bent.id ? "BENT 1\n" : "", c->sh[0].id ? "SH 1\n" : "",
-             c->visibility.id ? "VISIBILITY 1\n" : "", c->radiance.id ? "RADIANCE 1\n" : "",
+    snprintf(defines, sizeof defines, "%s%s%s%s%s%s", c->sh[3].id ? "BANDS3 1\n" : "", c->bent.id ? "BENT 1\n" : "",
+             c->sh[0].id ? "SH 1\n" : "", c->visibility.id ? "VISIBILITY 1\n" : "", c->radiance.id ? "RADIANCE 1\n" : "",
              c->indirect.id ? "INDIRECT 1\n" : "");
     const pass_binding bindings[] = {
         {2, &c->coverage, GL_READ_ONLY},  {3, &c->occlusion, GL_READ_WRITE}, {4, &c->visibility, GL_READ_WRITE},
         {5, &c->radiance, GL_READ_WRITE}, {6, &c->indirect, GL_READ_WRITE},  {7, &c->sh[0], GL_READ_WRITE},
-        {8, &c->sh[1], GL_READ_WRITE},    {9, &c->sh[2], GL_READ_WRITE},     {10, &c->bent, GL_READ_WRITE}};
+        {8, &c->sh[1], GL_READ_WRITE},    {9, &c->sh[2], GL_READ_WRITE},     {10, &c->bent, GL_READ_WRITE},
+        {11, &c->sh[3], GL_READ_WRITE},   {12, &c->sh[4], GL_READ_WRITE}};
     gpu_tiles whole = c->tiles, tiles;
     if (!make_tiles(c, &tiles, e)) return false;
     c->tiles = tiles;
-    bool ok = pass_run(c, "edges", defines, NULL, 0, bindings, 9, false, e);
+    bool ok = pass_run(c, "edges", defines, NULL, 0, bindings, 11, false, e);
     c->tiles = whole;
     gpu_tiles_free(&tiles);
     return ok;

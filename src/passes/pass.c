@@ -110,7 +110,7 @@ void pass_end(pass_context *c)
     gpu_image *images[] = {&c->depth,          &c->normal,        &c->albedo,    &c->beauty,     &c->material,  &c->emission,
                            &c->diffuse_direct, &c->coverage,      &c->occlusion, &c->visibility, &c->radiance,  &c->indirect,
                            &c->specular,       &c->diffuse_share, &c->composite, &c->diffuse,    &c->depthmask, &c->bent,
-                           &c->sh[0],          &c->sh[1],         &c->sh[2]};
+                           &c->sh[0],          &c->sh[1],         &c->sh[2],     &c->sh[3],      &c->sh[4]};
     for (size_t i = 0; i < sizeof images / sizeof *images; i++) gpu_image_free(images[i]);
     gpu_uniforms_free(c->frame_uniforms);
     gpu_uniforms_free(c->params_uniforms);

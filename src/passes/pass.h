@@ -14,7 +14,7 @@
 #include "light/sun.h"
 #include "passes/planes.h"
 
-enum { PASS_MAX_TIMINGS = 48, PASS_MAX_UPLOADS = 12 };
+enum { PASS_MAX_TIMINGS = 48, PASS_MAX_UPLOADS = 12, SH_IMAGES = 5 };
 
 typedef struct pass_timing {
     const char *name;
@@ -35,6 +35,7 @@ typedef struct pass_settings {
     bool thickness_fixed; // asked for by the user: no method may find a better one
     int samples;
     int blur;          // pixels, 0 none
+    int sh_bands;      // s3ho: highest l, 2 (0 too) or 3
     double sh_sigma;   // s3ho: radians of the low-pass
     double angle_bias; // hbao: degrees above the tangent where occlusion begins
     double scale, contrast;
@@ -81,15 +82,16 @@ typedef struct pass_context {
     gpu_image depth, normal, albedo, beauty, material, emission, diffuse_direct, coverage, environment;
     // Layers; id 0 until their pass has run.
     gpu_image occlusion, visibility, radiance, indirect, specular, diffuse_share, composite, diffuse, depthmask;
-    gpu_image bent;  // mean open direction of the cosine-weighted hemisphere, camera space: 2/3 long where all is open
-    gpu_image sh[3]; // SH vector of cosine-weighted visibility, coefficients 0 1 2 | 3 4 5 | 6 7 8
+    gpu_image bent;          // mean open direction of the cosine-weighted hemisphere, camera space: 2/3 long where all is open
+    gpu_image sh[SH_IMAGES]; // SH vector of cosine-weighted visibility, coefficients 0 1 2 | 3 4 5 | 6 7 8 and, with four bands,
+                             // | 9 10 11 12 | 13 14 15
 
-    const float *stored_sh[3]; // --from-sh: 3 a pixel, borrowed; NULL: s3ho measures
-    const environment *env;    // borrowed; NULL without light
-    const gbuffer *gb;         // borrowed: for what is found on the CPU
-    const proxy_set *proxies;  // borrowed; NULL or empty: none
-    pass_sunless *sunless;     // borrowed, lives as long as the batch
-    struct trace_scene *trace; // the same; for raytrace
+    const float *stored_sh[SH_IMAGES]; // --from-sh: 4 a pixel as in sh, borrowed; NULL: s3ho measures
+    const environment *env;            // borrowed; NULL without light
+    const gbuffer *gb;                 // borrowed: for what is found on the CPU
+    const proxy_set *proxies;          // borrowed; NULL or empty: none
+    pass_sunless *sunless;             // borrowed, lives as long as the batch
+    struct trace_scene *trace;         // the same; for raytrace
     int threads;
     plane_set planes; // found by the pass that uses them
 

@@ -32,7 +32,7 @@ static bool run(pass_context *c, const char *defines, const pass_binding *layers
         int unused;
     } params = {(float)c->set.radius, c->proxies->count, (float)c->set.bounce_strength, 0};
     gpu_image spheres = {0};
-    pass_binding bindings[8] = {{2, &spheres, GL_READ_ONLY}};
+    pass_binding bindings[10] = {{2, &spheres, GL_READ_ONLY}};
     for (int i = 0; i < count; i++) bindings[1 + i] = layers[i];
     bool ok = upload(c, &spheres, e) && pass_run(c, "proxies", defines, &params, sizeof params, bindings, 1 + count, false, e);
     gpu_image_free(&spheres);
@@ -43,13 +43,14 @@ bool pass_proxies(pass_context *c, error *e)
 {
     if (!c->proxies || c->proxies->count == 0) return true;
     char defines[96];
-    snprintf(defines, sizeof defines, "%s%s%s%s", c->radiance.id ? "RADIANCE 1\n" : "", c->visibility.id ? "VISIBILITY 1\n" : "",
-             c->bent.id ? "BENT 1\n" : "", c->sh[0].id ? "VECTOR 1\n" : "");
-    const pass_binding layers[] = {{3, &c->occlusion, GL_READ_WRITE}, {4, &c->visibility, GL_READ_WRITE},
-                                   {5, &c->radiance, GL_READ_WRITE},  {6, &c->bent, GL_READ_WRITE},
-                                   {7, &c->sh[0], GL_READ_WRITE},     {8, &c->sh[1], GL_READ_WRITE},
-                                   {9, &c->sh[2], GL_READ_WRITE}};
-    return run(c, defines, layers, 7, e);
+    snprintf(defines, sizeof defines, "%s%s%s%s%s", c->radiance.id ? "RADIANCE 1\n" : "",
+             c->visibility.id ? "VISIBILITY 1\n" : "", c->bent.id ? "BENT 1\n" : "", c->sh[0].id ? "VECTOR 1\n" : "",
+             c->sh[3].id ? "BANDS3 1\n" : "");
+    const pass_binding layers[] = {
+        {3, &c->occlusion, GL_READ_WRITE}, {4, &c->visibility, GL_READ_WRITE}, {5, &c->radiance, GL_READ_WRITE},
+        {6, &c->bent, GL_READ_WRITE},      {7, &c->sh[0], GL_READ_WRITE},      {8, &c->sh[1], GL_READ_WRITE},
+        {9, &c->sh[2], GL_READ_WRITE},     {10, &c->sh[3], GL_READ_WRITE},     {11, &c->sh[4], GL_READ_WRITE}};
+    return run(c, defines, layers, 9, e);
 }
 
 bool pass_proxies_bounce(pass_context *c, error *e)

@@ -8,6 +8,10 @@
 
 static const double Y00 = 0.28209479177387814;
 
+// Images of the vector: three for l <= 2, five for l <= 3.
+static int images(const pass_context *c) { return c->set.sh_bands == 3 ? SH_IMAGES : 3; }
+static const char *bands(const pass_context *c) { return c->set.sh_bands == 3 ? "BANDS3 1\n" : ""; }
+
 static void world_rows(const pass_context *c, float rows[3][4])
 {
     for (int r = 0; r < 3; r++)
@@ -26,21 +30,27 @@ static bool measure(pass_context *c, error *e)
                 .thickness = isinf(c->set.thickness) ? 1e30f : (float)c->set.thickness,
                 .samples = c->set.samples,
                 .seed = c->set.seed,
-                .bands = {(float)low_pass(c, 0), (float)low_pass(c, 1), (float)low_pass(c, 2), 0.0f}};
+                .bands = {(float)low_pass(c, 0), (float)low_pass(c, 1), (float)low_pass(c, 2), (float)low_pass(c, 3)}};
     world_rows(c, params.world);
-    const pass_binding bindings[] = {{2, &c->sh[0], GL_WRITE_ONLY}, {3, &c->sh[1], GL_WRITE_ONLY}, {4, &c->sh[2], GL_WRITE_ONLY}};
-    return pass_run(c, "s3ho", NULL, &params, sizeof params, bindings, 3, false, e);
+    const pass_binding bindings[] = {{2, &c->sh[0], GL_WRITE_ONLY},
+                                     {3, &c->sh[1], GL_WRITE_ONLY},
+                                     {4, &c->sh[2], GL_WRITE_ONLY},
+                                     {5, &c->sh[3], GL_WRITE_ONLY},
+                                     {6, &c->sh[4], GL_WRITE_ONLY}};
+    return pass_run(c, "s3ho", bands(c), &params, sizeof params, bindings, 5, false, e);
 }
 
 static bool gather_pattern(pass_context *c, error *e)
 {
-    gpu_image t[3] = {{0}, {0}, {0}};
+    gpu_image t[SH_IMAGES] = {{0}};
     bool ok = true;
-    for (int k = 0; ok && k < 3; k++) ok = pass_make(c, &t[k], GL_RGBA32F, 0.0f, e);
+    for (int k = 0; ok && k < images(c); k++) ok = pass_make(c, &t[k], GL_RGBA32F, 0.0f, e);
     const pass_binding bindings[] = {{2, &c->sh[0], GL_READ_ONLY}, {3, &c->sh[1], GL_READ_ONLY}, {4, &c->sh[2], GL_READ_ONLY},
-                                     {5, &t[0], GL_WRITE_ONLY},    {6, &t[1], GL_WRITE_ONLY},    {7, &t[2], GL_WRITE_ONLY}};
-    ok = ok && pass_run(c, "s3ho_filter", NULL, NULL, 0, bindings, 6, false, e);
-    for (int k = 0; k < 3; k++) {
+                                     {5, &t[0], GL_WRITE_ONLY},    {6, &t[1], GL_WRITE_ONLY},    {7, &t[2], GL_WRITE_ONLY},
+                                     {8, &c->sh[3], GL_READ_ONLY}, {9, &c->sh[4], GL_READ_ONLY}, {10, &t[3], GL_WRITE_ONLY},
+                                     {11, &t[4], GL_WRITE_ONLY}};
+    ok = ok && pass_run(c, "s3ho_filter", bands(c), NULL, 0, bindings, 10, false, e);
+    for (int k = 0; k < images(c); k++) {
         gpu_image_free(&c->sh[k]);
         c->sh[k] = t[k];
     }
@@ -53,11 +63,9 @@ static bool upload_stored(pass_context *c, error *e)
     size_t n = (size_t)c->width * (size_t)c->height;
     float *v = mem_pixels(4 * n, sizeof *v, e);
     if (!v) return false;
-    for (int k = 0; k < 3; k++) {
-        for (size_t i = 0; i < n; i++) {
-            memcpy(v + 4 * i, c->stored_sh[k] + 3 * i, 3 * sizeof *v);
-            v[4 * i + 3] = (float)((double)v[4 * i] / (M_PI * Y00));
-        }
+    for (int k = 0; k < images(c); k++) {
+        memcpy(v, c->stored_sh[k], 4 * n * sizeof *v);
+        for (size_t i = 0; k == 0 && i < n; i++) v[4 * i + 3] = (float)((double)v[4 * i] / (M_PI * Y00));
         gpu_image_upload(&c->sh[k], 0, v);
     }
     free(v);
@@ -68,28 +76,31 @@ static bool light(pass_context *c, error *e)
 {
     static const double a[3] = {M_PI, 2.0 * M_PI / 3.0, M_PI / 4.0};
     struct {
-        float world[3][4], bands[4], light[9][4];
+        float world[3][4], bands[4], light[SH_MAX][4];
     } params = {0};
     world_rows(c, params.world);
     for (int l = 0; l < 3; l++) params.bands[l] = (float)(a[l] * low_pass(c, l));
-    double in_world[9][3] = {{0}};
-    if (c->env) sh_turn(c->env->sh, c->env->map_from_world, in_world);
-    for (int i = 0; i < 9; i++) {
+    double in_world[SH_MAX][3] = {{0}};
+    const int count = c->set.sh_bands == 3 ? 16 : 9;
+    if (c->env) sh_turn(c->env->sh, c->env->map_from_world, c->set.sh_bands == 3 ? 4 : 3, in_world);
+    for (int i = 0; i < count; i++) {
         for (int k = 0; k < 3; k++) params.light[i][k] = (float)in_world[i][k];
         if (c->env) log_info(c->log, "environment L_%d: %.6g %.6g %.6g", i, in_world[i][0], in_world[i][1], in_world[i][2]);
     }
     char defines[64] = "";
+    strcat(defines, bands(c));
     if (c->want_radiance) strcat(defines, "LIGHT 1\n");
     if (c->want_visibility) strcat(defines, "VISIBILITY 1\n");
     const pass_binding bindings[] = {{2, &c->sh[0], GL_READ_ONLY},     {3, &c->sh[1], GL_READ_ONLY},
                                      {4, &c->sh[2], GL_READ_ONLY},     {5, &c->occlusion, GL_WRITE_ONLY},
-                                     {6, &c->radiance, GL_WRITE_ONLY}, {7, &c->visibility, GL_WRITE_ONLY}};
-    return pass_run(c, "s3ho_light", defines, &params, sizeof params, bindings, 6, false, e);
+                                     {6, &c->radiance, GL_WRITE_ONLY}, {7, &c->visibility, GL_WRITE_ONLY},
+                                     {8, &c->sh[3], GL_READ_ONLY},     {9, &c->sh[4], GL_READ_ONLY}};
+    return pass_run(c, "s3ho_light", defines, &params, sizeof params, bindings, 8, false, e);
 }
 
 bool pass_s3ho(pass_context *c, error *e)
 {
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < images(c); k++)
         if (!pass_make(c, &c->sh[k], GL_RGBA32F, 0.0f, e)) return false;
     if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e)) return false;
     if (c->want_radiance && !pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e)) return false;

@@ -38,7 +38,7 @@ bool pass_upsample(pass_context *c, const pass_context *small, error *e)
     gpu_image *to[3] = {&c->occlusion, &c->visibility, &c->radiance};
     if (!bring(c, small, from, to, e)) return false;
     if (small->bent.id && !pass_upsample_colour(c, small, &small->bent, &c->bent, e)) return false;
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < SH_IMAGES; k++)
         if (small->sh[k].id && !pass_upsample_colour(c, small, &small->sh[k], &c->sh[k], e)) return false;
     return true;
 }

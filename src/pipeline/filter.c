@@ -120,13 +120,33 @@ static void point_along(const gbuffer *gb, float *v, size_t pixels)
     }
 }
 
+// Two pictures of four components, one behind the other, to one of eight.
+static bool interleave(float *v, size_t pixels, error *e)
+{
+    float *t = mem_pixels(8 * pixels, sizeof *t, e);
+    if (!t) return false;
+    for (size_t i = 0; i < pixels; i++) {
+        memcpy(t + 8 * i, v + 4 * i, 4 * sizeof *t);
+        memcpy(t + 8 * i + 4, v + 4 * (pixels + i), 4 * sizeof *t);
+    }
+    memcpy(v, t, 8 * pixels * sizeof *t);
+    free(t);
+    return true;
+}
+
 static bool read_back(const gpu_image *image, layer_id l, frame_result *r, error *e)
 {
     size_t pixels = (size_t)r->gb.width * (size_t)r->gb.height, channels = strlen(layer_table[l].channels);
-    size_t stored = image->format == GL_R32F ? 1 : 4;
+    bool last = l == LAYER_SH_3; // its last three coefficients are in the next image
+    size_t stored = image->format == GL_R32F ? 1 : last ? 8 : 4;
     float *v = mem_pixels(pixels * stored, sizeof *v, e);
     if (!v) return false;
     gpu_image_download(image, v);
+    if (last) gpu_image_download(image + 1, v + 4 * pixels);
+    if (last && !interleave(v, pixels, e)) {
+        free(v);
+        return false;
+    }
     sanitise(l, v, pixels, stored, channels);
     if (l == LAYER_BENT) point_along(&r->gb, v, pixels);
     r->layers[l] = v;
@@ -148,6 +168,7 @@ static bool read_layers(const pass_context *c, frame_result *r, error *e)
         [LAYER_SH_0] = &c->sh[0],
         [LAYER_SH_1] = &c->sh[1],
         [LAYER_SH_2] = &c->sh[2],
+        [LAYER_SH_3] = &c->sh[3],
     };
     for (int i = 0; i < LAYER_COUNT; i++)
         if (r->plan.layers & 1u << i && !read_back(images[i], (layer_id)i, r, e)) return false;
@@ -188,7 +209,7 @@ bool filter_frame(job *j, frame_result *r, error *e)
     c.want_radiance = r->plan.want_radiance;
     c.want_bent = r->plan.want_bent;
     c.want_visibility = r->plan.want_visibility && r->plan.method->fills_radiance;
-    for (int k = 0; k < 3; k++) c.stored_sh[k] = r->stored_sh[k];
+    for (int k = 0; k < SH_IMAGES; k++) c.stored_sh[k] = r->stored_sh[k];
     c.tiles.stop = j->stop;
     c.want_diffuse = r->plan.layers & 1u << LAYER_DIFFUSE;
     bool ok = run_passes(&c, &r->plan, e) && gpu_finish(&j->g, "the passes", e);

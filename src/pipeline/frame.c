@@ -246,6 +246,7 @@ static pass_settings settings_of(const job *j, const frame_result *r, double rad
         .half = o->half && !r->plan.from_sh, // stored layers are whole already
         .samples = o->samples > 0 ? o->samples : samples_at(m, o->quality),
         .angle_bias = o->angle_bias,
+        .sh_bands = o->sh_bands,
         .sh_sigma = o->sh_sigma,
         .blur = o->blur < 0 ? m->blur : o->blur,
         .scale = o->scale,
@@ -352,7 +353,7 @@ bool frame_measure_radius(const job *j, const char *const *inputs, int count, do
 static void free_view(frame_result *r)
 {
     for (int i = 0; i < LAYER_COUNT; i++) free(r->layers[i]);
-    for (int k = 0; k < 3; k++) free(r->stored_sh[k]);
+    for (int k = 0; k < SH_IMAGES; k++) free(r->stored_sh[k]);
     proxies_free(&r->proxies);
     gbuffer_free(&r->gb);
 }

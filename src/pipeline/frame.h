@@ -49,7 +49,7 @@ typedef struct frame_result {
     int tile_size, tiles, tiles_occupied; // tiles without a surface are not dispatched (but for the composite of a background)
     size_t clamped;                       // samples of ours that a half could not hold
     float *layers[LAYER_COUNT];           // width * height * channels, interleaved; NULL where not made
-    float *stored_sh[3];                  // --from-sh: what the input brought along, else NULL
+    float *stored_sh[SH_IMAGES];          // --from-sh: what the input brought along, else NULL
     bool second_part;
     const char *view;               // the stereo view this is, the file's string; NULL without views
     struct frame_result *next_view; // owned; shares the file

@@ -19,6 +19,7 @@ typedef enum layer_id {
     LAYER_SH_0, // LAYER_SH_0 + k
     LAYER_SH_1,
     LAYER_SH_2,
+    LAYER_SH_3,
     LAYER_COUNT
 } layer_id;
 

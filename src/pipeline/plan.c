@@ -56,8 +56,9 @@ static bool drop_impossible(plan *p, const options *o, const exr_file *file, con
         return false;
     if (!p->method->fills_bent && !cannot(p, o, file, LAYER_BENT, NULL, "only the methods arc, gtao and bitmask make it", log, e))
         return false;
-    for (int l = LAYER_SH_0; l <= LAYER_SH_2; l++)
+    for (int l = LAYER_SH_0; l <= LAYER_SH_3; l++)
         if (!p->method->fills_sh && !cannot(p, o, file, (layer_id)l, NULL, "only --method s3ho makes it", log, e)) return false;
+    if (o->sh_bands != 3 && !cannot(p, o, file, LAYER_SH_3, NULL, "it needs --sh-bands 3", log, e)) return false;
     if (!in->roughness &&
         !cannot(p, o, file, LAYER_SPECULAR, "roughness", "no roughness channel was found; name it with --roughness", log, e))
         return false;

@@ -11,10 +11,13 @@
 
 enum { NAME_SIZE = 96 };
 
-static void name_of(const options *o, int layer, int k, char *name)
+static int count(const options *o) { return o->sh_bands == 3 ? 16 : 9; }
+
+// Coefficients 0 to 8 are in layers of three, 9 to 15 in one of seven.
+static void name_of(const options *o, int i, char *name)
 {
-    const layer_info *l = &layer_table[LAYER_SH_0 + layer];
-    snprintf(name, NAME_SIZE, "%s%s.%c", o->prefix ? o->prefix : "", l->name, l->channels[k]);
+    const layer_info *l = &layer_table[i < 9 ? LAYER_SH_0 + i / 3 : LAYER_SH_3];
+    snprintf(name, NAME_SIZE, "%s%s.%c", o->prefix ? o->prefix : "", l->name, l->channels[i < 9 ? i % 3 : i - 9]);
 }
 
 static exr_channel *find(const exr_file *file, const char *view, const char *name, const exr_part **part)
@@ -31,14 +34,14 @@ static exr_channel *find(const exr_file *file, const char *view, const char *nam
 bool stored_sh_want(const options *o, exr_file *file, const char *view, error *e)
 {
     const exr_part *part;
-    for (int i = 0; i < 9; i++) {
+    for (int i = 0; i < count(o); i++) {
         char name[NAME_SIZE];
-        name_of(o, i / 3, i % 3, name);
+        name_of(o, i, name);
         exr_channel *channel = find(file, view, name, &part);
         if (!channel)
-            return err_set(
-                e, ERR_INPUT, file->path, name,
-                "--from-sh needs the layers that --method s3ho --layers sh_0,sh_1,sh_2 writes, and this one is missing");
+            return err_set(e, ERR_INPUT, file->path, name,
+                           "--from-sh needs the layers that --method s3ho --layers sh_0,sh_1,sh_2 (and sh_3 with --sh-bands 3) "
+                           "writes, and this one is missing");
         channel->wanted = true;
     }
     return true;
@@ -52,19 +55,20 @@ static float sample_at(const exr_channel *c, size_t i)
     return isfinite(v) ? v : 0.0f;
 }
 
-bool stored_sh_load(const options *o, const exr_file *file, const char *view, const gbuffer *gb, float *out[3], error *e)
+bool stored_sh_load(const options *o, const exr_file *file, const char *view, const gbuffer *gb, float *out[5], error *e)
 {
     size_t n = (size_t)gb->width * (size_t)gb->height;
-    for (int i = 0; i < 9; i++) {
+    for (int i = 0; i < count(o); i++) {
         char name[NAME_SIZE];
-        name_of(o, i / 3, i % 3, name);
+        name_of(o, i, name);
         const exr_part *part = NULL;
         const exr_channel *channel = find(file, view, name, &part);
         if (!channel || !channel->data || !box2_equal(part->data_window, gb->data_window))
             return err_set(e, ERR_INPUT, file->path, name,
                            "this stored layer has another data window than the picture's surfaces");
-        if (i % 3 == 0 && !(out[i / 3] = mem_pixels(3 * n, sizeof **out, e))) return false;
-        for (size_t k = 0; k < n; k++) out[i / 3][3 * k + (size_t)(i % 3)] = sample_at(channel, k);
+        int image = i < 9 ? i / 3 : i < 13 ? 3 : 4, place = i < 9 ? i % 3 : (i - 9) % 4;
+        if (place == 0 && !(out[image] = mem_zero(4 * n, sizeof **out, e))) return false;
+        for (size_t k = 0; k < n; k++) out[image][4 * k + (size_t)place] = sample_at(channel, k);
     }
     return true;
 }

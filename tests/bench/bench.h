@@ -58,6 +58,7 @@ typedef struct bench_row {
     double thickness;       // share of the radius; < 0 as the method's row has it
     double scale, contrast; // 1
     bool no_planes, half;   // --planes off, --resolution half
+    int sh_bands;           // of s3ho; 0 as 2
     const char *bounce;     // NULL: the method's own
     int lights;             // of the bounce vpl
     bool standard;          // the method's own defaults: a row of the short table

@@ -89,6 +89,11 @@ static int method_rows(const method *m, bench_row *rows)
     rows[n] = row_of(m, ", half resolution", m->samples, m->blur);
     rows[n].half = rows[n].standard = true;
     n++;
+    if (m->fills_sh) {
+        rows[n] = row_of(m, ", --sh-bands 3", m->samples, m->blur);
+        rows[n].sh_bands = 3;
+        rows[n++].standard = true;
+    }
     for (size_t v = 0; v < sizeof variants / sizeof *variants; v++)
         if (strcmp(variants[v].method, m->name) == 0) n += variant_rows(m, &variants[v], rows + n);
     return n;

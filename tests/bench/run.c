@@ -18,6 +18,7 @@ pass_settings bench_settings(const bench_row *row, const bench_scene *b)
     set.planes = !row->no_planes;
     set.half = row->half;
     if (row->lights > 0) set.vpl_count = row->lights;
+    set.sh_bands = row->sh_bands;
     set.scale = row->scale;
     set.contrast = row->contrast;
     return set;
