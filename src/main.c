@@ -62,7 +62,8 @@ static bool run_frame(job *j, error *e)
     progress_begin(&p, o->progress, 1, j->log);
     j->progress = &p;
     bool ok = frame_run_files(j, o->inputs, o->input_count, o->output, &r, e) &&
-              (!o->preview || preview_write(&r, o->preview, e)) && (!o->report || report_write(j, &r, o->output, o->report, e));
+              (!o->preview || preview_write(o, &r, o->preview, e)) &&
+              (!o->report || report_write(j, &r, o->output, o->report, e));
     frame_free(&r);
     progress_end(&p);
     j->progress = NULL;

@@ -167,7 +167,7 @@ static bool write_extras(const batch *b, const slot *s, error *e)
     const options *o = b->j->o;
     char path[PATH];
     bool look = o->preview && s->frame % o->preview_every == 0;
-    if (look && (!pattern_path(o->preview, s->frame, path, sizeof path) || !preview_write(&s->result, path, e))) return false;
+    if (look && (!pattern_path(o->preview, s->frame, path, sizeof path) || !preview_write(o, &s->result, path, e))) return false;
     return !o->report || !pattern_is(o->report) ||
            (pattern_path(o->report, s->frame, path, sizeof path) && report_write(b->j, &s->result, s->output, path, e));
 }

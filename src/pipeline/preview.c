@@ -6,7 +6,10 @@
 #include <string.h>
 
 #include "base/half.h"
+#include "base/mem.h"
+#include "light/primaries.h"
 #include "pipeline/sheet.h"
+#include "plugin/colour.h"
 #include "plugin/images.h"
 
 enum { LABEL = 24, GAP = 6, COLUMNS = 2, EXPOSURE_SAMPLES = 4096, NARROW = 320, WIDE = 960, BACKGROUND = 40 };
@@ -101,27 +104,60 @@ static float decode(uint8_t code)
     return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
 }
 
-static uint8_t shade(layer_id l, const dot *d, int k, float gain, uint8_t checker)
+static bool is_light(layer_id l) { return layer_table[l].channels[1] && !is_signed(l) && l != LAYER_DEPTHMASK; }
+
+// What is no light, as a code.
+static uint8_t shade(layer_id l, const dot *d, int k)
 {
     if (is_signed(l)) return share(0.5f * (d->v[k] + 1.0f));
     if (l == LAYER_DEPTHMASK) return share(d->v[0] + 1.0f); // its 0 is shown white
-    if (!layer_table[l].channels[1]) return share(d->v[0]);
-    return encode(gain * d->v[k] + d->open * decode(checker));
+    return share(d->v[0]);
 }
 
-static void draw_layer(sheet *s, const frame_result *r, layer_id l, int x0, int y0, const zoom *z, float gain)
+// From scene-linear light to codes, in place: by the config's view, else by sRGB's curve after its primaries.
+static bool develop(const options *o, const frame_result *r, float *rgb, size_t n, error *e)
 {
-    for (int y = 0; y < z->height; y += z->enlarge)
-        for (int x = 0; x < z->width; x += z->enlarge) {
-            dot d;
-            bool any = average(r, l, x / z->enlarge * z->reduce, y / z->enlarge * z->reduce, z->reduce, &d);
-            for (int i = 0; i < z->enlarge * z->enlarge; i++) {
-                int sx = x + i % z->enlarge, sy = y + i / z->enlarge;
-                uint8_t checker = sheet_checker(sx, sy), c[3] = {checker, checker, checker};
-                for (int k = 0; any && k < 3; k++) c[k] = shade(l, &d, k, gain, checker);
-                sheet_put(s, x0 + sx, y0 + sy, c);
-            }
+    double xy[8];
+    mat3 m;
+    if (o->display || o->view || colour_config(o->ocio)) return colour_to_display(o->ocio, o->display, o->view, rgb, n, e);
+    bool other = exr_attr_chromaticities(r->file, r->resolution.main_part, xy) && !primaries_equal(xy, primaries_rec709) &&
+                 primaries_between(xy, primaries_rec709, &m);
+    for (size_t i = 0; i < n; i++) {
+        float *v = rgb + 3 * i;
+        vec3 c = v3((double)v[0], (double)v[1], (double)v[2]);
+        if (other) c = m3_apply(m, c);
+        v[0] = (float)encode((float)c.x) / 255.0f;
+        v[1] = (float)encode((float)c.y) / 255.0f;
+        v[2] = (float)encode((float)c.z) / 255.0f;
+    }
+    return true;
+}
+
+// One cell: its dots as linear light or, for other layers, as codes already; then all of them onto the sheet.
+static bool draw_layer(sheet *s, const options *o, const frame_result *r, layer_id l, int x0, int y0, const zoom *z, float gain,
+                       error *e)
+{
+    size_t n = (size_t)z->width * (size_t)z->height;
+    float *rgb = mem_pixels(n, 3 * sizeof *rgb, e);
+    if (!rgb) return false;
+    for (size_t i = 0; i < n; i++) {
+        int x = (int)(i % (size_t)z->width), y = (int)(i / (size_t)z->width);
+        dot d;
+        bool any = average(r, l, x / z->enlarge * z->reduce, y / z->enlarge * z->reduce, z->reduce, &d);
+        uint8_t checker = sheet_checker(x, y);
+        for (int k = 0; k < 3; k++) {
+            float light = any ? gain * d.v[k] + d.open * decode(checker) : decode(checker);
+            rgb[3 * i + (size_t)k] = is_light(l) ? light : (float)(any ? shade(l, &d, k) : checker) / 255.0f;
         }
+    }
+    bool ok = !is_light(l) || develop(o, r, rgb, n, e);
+    for (size_t i = 0; ok && i < n; i++) {
+        const float *v = rgb + 3 * i;
+        uint8_t c[3] = {share(v[0]), share(v[1]), share(v[2])};
+        sheet_put(s, x0 + (int)(i % (size_t)z->width), y0 + (int)(i / (size_t)z->width), c);
+    }
+    free(rgb);
+    return ok;
 }
 
 // The radius and its length in the cells; the checkerboard. Below `y`, over `width` columns.
@@ -148,7 +184,7 @@ static void draw_legend(sheet *s, const frame_result *r, int y, int width, const
     sheet_text(s, x + 32 + SHEET_LETTER, y + 1, "no surface");
 }
 
-bool preview_write(const frame_result *r, const char *path, error *e)
+bool preview_write(const options *o, const frame_result *r, const char *path, error *e)
 {
     int cells = 0;
     zoom z = zoom_for(r->gb.width, r->gb.height);
@@ -157,18 +193,19 @@ bool preview_write(const frame_result *r, const char *path, error *e)
     int below = rows * (z.height + LABEL + GAP) + GAP;
     sheet s;
     if (!sheet_make(&s, columns * (z.width + GAP) + GAP, below + 3 * LABEL, BACKGROUND, e)) return false;
-    for (int l = 0, cell = 0; l < LAYER_COUNT; l++) {
+    bool ok = true;
+    for (int l = 0, cell = 0; ok && l < LAYER_COUNT; l++) {
         if (!r->layers[l]) continue;
         int x = GAP + cell % COLUMNS * (z.width + GAP), y = GAP + cell / COLUMNS * (z.height + LABEL + GAP);
         float gain = exposure(r, (layer_id)l);
         char label[64];
         snprintf(label, sizeof label, gain == 1.0f ? "%s" : "%s x%.2g", layer_table[l].name, (double)gain);
         sheet_text(&s, x, y + (LABEL - SHEET_TEXT_HEIGHT) / 2, label);
-        draw_layer(&s, r, (layer_id)l, x, y + LABEL, &z, gain);
+        ok = draw_layer(&s, o, r, (layer_id)l, x, y + LABEL, &z, gain, e);
         cell++;
     }
     draw_legend(&s, r, below, columns * (z.width + GAP) - GAP, &z);
-    bool ok = images_write_png(path, s.width, s.height, s.rgb, e);
+    ok = ok && images_write_png(path, s.width, s.height, s.rgb, e);
     sheet_free(&s);
     return ok;
 }

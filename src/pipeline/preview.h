@@ -9,6 +9,9 @@
 // is exposed so that its 95th percentile is at 0.8 (its label says by which factor), and sRGB-encoded; shares are shown as they
 // are, directions and coefficients with 0 as grey. A composite with alpha lies over the checkerboard. Large frames are reduced
 // and small ones enlarged by a whole number, so that a cell is 320 to 960 columns wide.
-bool preview_write(const frame_result *r, const char *path, error *e);
+//
+// With an OpenColorIO config (--ocio, $OCIO) light goes through its display and view (--display, --view) instead; without one,
+// light in the primaries of a chromaticities attribute is brought to sRGB's.
+bool preview_write(const options *o, const frame_result *r, const char *path, error *e);
 
 #endif

@@ -1,0 +1,19 @@
+#!/bin/sh
+# Previews through a real OpenColorIO config (Blender's): its Standard view is sRGB, which is what there is without a config; Filmic
+# is another; an unknown view lists those there are.
+set -u
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+die() { echo "FAILED: $*"; exit 1; }
+config=/usr/share/blender/datafiles/colormanagement/config.ocio
+[ -r $config ] || { echo "no $config here (package blender-data)"; exit 77; }
+unset OCIO
+look() { "$SSDO" -q samples/still.exr -o "$dir/o.exr" --samples 4 --layers composite --preview "$dir/$1.png" $2 || die "$1"; }
+look none ""
+look standard "--ocio $config --view Standard"
+look filmic "--ocio $config --view Filmic"
+oiiotool --fail 0.004 --hardfail 0.004 --diff "$dir/none.png" "$dir/standard.png" >/dev/null || die "Standard is not sRGB"
+oiiotool --fail 0.02 --diff "$dir/standard.png" "$dir/filmic.png" >/dev/null && die "Filmic changes nothing"
+"$SSDO" -q samples/still.exr -o "$dir/o.exr" --samples 4 --layers composite --preview "$dir/x.png" --ocio $config --view Nice 2>"$dir/err" && die "taken"
+grep -q 'Filmic' "$dir/err" && [ "$(wc -l <"$dir/err")" = 1 ] || die "$(cat "$dir/err")"
+exit 0
