@@ -37,7 +37,7 @@ void main() {
     vec3 P = position_of(p, depth), N = normal_at(p);
     // A length, so relative to the radius and to what rounding and the pixel grid can fake (THEORY.md 1.17).
     float bias = 1e-3 * min(params.radius, footprint(depth)) + 4.0 * rounding(P);
-    vec2 disc = params.radius * frame.lens.xy / (is_orthographic() ? 1.0 : depth); // R in pixels, THEORY.md 1.1
+    vec2 disc = params.radius * frame_lens.xy / (is_orthographic() ? 1.0 : depth); // R in pixels, THEORY.md 1.1
     vec2 noise = pixel_hash(uvec2(p) + uint(params.seed) * 7919u);
     float turn = 2.0 * PI * noise.x; // a whole turn, THEORY.md 1.2
     float sum = 0.0;

@@ -7,6 +7,9 @@
 //   LIGHT:  radiance = sum w (open share x environment) / sum w + suns,  visibility = its luminance over that of the open sky
 //   BOUNCE: indirect = sum w (blocked share x what the nearest blocker sends) / sum w
 // The sectors are blocked by HORIZON or BITMASK, the older methods, or by RUNS and PLANES, which are `arc`.
+#if !defined(LIGHT) && !defined(BOUNCE)
+#define LIMITED // by the radius; light comes from any distance
+#endif
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
 #include "include/environment.glsl"
@@ -61,8 +64,8 @@ void main() {
     mat3 around = tangent_frame(V);
     vec2 origin = vec2(p) + 0.5;
     float eye_distance = length(P), open = 0.0, all = 0.0;
-    uint seed = uint(params.seed) * 7919u;
-    vec2 turn = pixel_hash(uvec2(p) + seed);
+    float tangent = ball_tangent(P);
+    vec3 turn = pixel_noise(p, params.seed);
 #ifdef LIGHT
     Light light = Light(vec3(0.0), 0.0, 0.0);
 #endif
@@ -74,15 +77,24 @@ void main() {
 #endif
     for (int i = 0; i < params.slices; i++) {
         float phi = PI * (float(i) + turn.x) / float(params.slices);
-        vec2 noise = pixel_hash(uvec2(p) + uvec2(seed + 131u * uint(i + 1), 17u));
+        vec2 noise = fract(turn.yz + float(i) * vec2(0.6180340, 0.7548777));
         vec3 across = cos(phi) * around[0] + sin(phi) * around[1];
+        Lines lines = lines_of(V, across, origin, tangent);
         float n, weight;
-        Side side = side_of(V, across, N, eye_distance, n, weight);
-        Line line = line_of(P, V, across, origin), back = reversed(line, P, V, across);
-        Sectors slots = march(side, line, P, N, noise.x, noise.y);
-        add_mirrored(slots, march(opposite(side, n), back, P, N, 1.0 - noise.x, 1.0 - noise.y));
+        Side side = opposite(side_of(V, across, N, eye_distance, n, weight), n);
+        Line line = lines.left;
+        Sectors slots = all_open();
+        // Both sides of the slice, the near one last; sectors are counted from the other end on the far side.
+        for (int k = 0; k < 2; k++) {
+            march(slots, side, line, P, N, V, k == 0 ? 1.0 - noise.x : noise.x, k == 0 ? 1.0 - noise.y : noise.y);
+            if (k == 0) {
+                slots.blocked = bitfieldReverse(slots.blocked.yx);
+                side = opposite(side, -n);
+                line = lines.right;
+            }
+        }
 #ifdef PLANES
-        block_by_planes(slots, side, V, across, n, line, back, P, noise.y);
+        block_by_planes(slots, side, V, across, n, lines, P, noise.y);
 #endif
         open += weight * (1.0 - sector_share(slots.blocked));
         all += weight;

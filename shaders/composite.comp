@@ -105,7 +105,7 @@ vec3 background(ivec2 p, bool wanted) {
 #if BACKGROUND == 2
     vec3 ray = is_orthographic() ? vec3(0.0, 0.0, 1.0) : normalize(ray_at(vec2(p) + 0.5));
     vec3 direction = to_map(ray);
-    float pixel = 1.0 / (frame.lens.x * frame.lens.y) * pow(ray.z, 3.0);
+    float pixel = 1.0 / (frame_lens.x * frame_lens.y) * pow(ray.z, 3.0);
     return radiance_from(direction, is_orthographic() ? 0.0 : map_level(direction, pixel));
 #elif BACKGROUND == 1
     int best = 1 << 20, reach = wanted ? 2 : -1;

@@ -24,7 +24,7 @@ layout(r32f, binding = 2) writeonly uniform image2D occlusion_image;
 // How far the projection of P moves, in pixels, when P moves by R along a direction: the projected radius.
 vec2 projected_radius(vec3 P, vec3 along) {
     vec2 d = is_orthographic() ? along.xy : (along.xy * P.z - P.xy * along.z) / (P.z * P.z);
-    return params.radius * frame.lens.xy * d;
+    return params.radius * frame_lens.xy * d;
 }
 
 // Point of the recorded surface under a screen position; false if there is none.

@@ -4,14 +4,9 @@
 #include "include/frame.glsl"
 #include "include/arc_params.glsl"
 
-struct Plane {
-    vec4 equation;
-    vec4 u, v;
-    vec4 half_size;
-    vec4 light;
-    uvec4 cells[2];
-};
-layout(std430, binding = 0) buffer Planes { Plane planes[12]; };
+#include "include/arc_plane.glsl"
+
+layout(rgba32f, binding = 7) uniform image2D planes_image;
 layout(rgba32f, binding = 4) readonly uniform image2D sender_image;
 layout(rgba32f, binding = 5) readonly uniform image2D albedo_image;
 
@@ -25,17 +20,18 @@ vec3 sent_by(ivec2 q) {
 void main() {
     int i = int(gl_LocalInvocationIndex);
     if (i >= params.planes) return;
-    vec4 equation = planes[i].equation;
+    vec4 equation = imageLoad(planes_image, ivec2(PLANE_EQUATION, i));
+    float room = imageLoad(planes_image, ivec2(PLANE_LIGHT, i)).w;
     vec3 sum = vec3(0.0);
     float count = 0.0;
     for (int k = 0; k < GRID * GRID; k++) {
-        ivec2 q = (ivec2(k % GRID, k / GRID) * 2 + 1) * frame.size.xy / (2 * GRID);
+        ivec2 q = (ivec2(k % GRID, k / GRID) * 2 + 1) * frame_size / (2 * GRID);
         float depth = depth_at(q);
         if (depth == 0.0) continue;
         float off = abs(dot(equation.xyz, position_of(q, depth)) - equation.w);
-        if (off > planes[i].half_size.z * (is_orthographic() ? 1.0 : depth) || dot(equation.xyz, normal_at(q)) < 0.99) continue;
+        if (off > room * (is_orthographic() ? 1.0 : depth) || dot(equation.xyz, normal_at(q)) < 0.99) continue;
         sum += sent_by(q);
         count += 1.0;
     }
-    planes[i].light = vec4(count > 0.0 ? sum / count : vec3(0.0), 0.0);
+    imageStore(planes_image, ivec2(PLANE_LIGHT, i), vec4(count > 0.0 ? sum / count : vec3(0.0), room));
 }

@@ -7,46 +7,41 @@ struct Line {
     float reach;    // distance beyond which no view ray meets the ball of radius R
 };
 
-float leaves_frame(vec2 origin, vec2 direction) {
-    vec2 room = mix(origin, vec2(frame.size.xy) - origin, greaterThan(direction, vec2(0.0)));
-    vec2 steps = room / max(abs(direction), vec2(1e-6));
-    return min(steps.x, steps.y) - 1e-3;
+const float NO_REACH = 1e9;
+
+// Both halves of the line of a slice. With V' = -V, a direction V' + tan(a) across appears at the distance
+// tan(a) |J| / (V'_z (V'_z + tan(a) across_z)) from P's pixel, J the derivative of the projection. The slice cuts the ball in a
+// circle that reaches asin(R / |P|) to either side of P; `tangent` is the tangent of that angle, negative if the eye is in the ball.
+struct Lines { Line right, left; };
+
+Lines lines_of(vec3 V, vec3 across, vec2 origin, float tangent) {
+    vec2 derivative = (is_orthographic() ? across.xy : across.xy * V.z - V.xy * across.z) * frame_lens.xy;
+    float size = inversesqrt(max(dot(derivative, derivative), 1e-30));
+    vec2 direction = derivative * size * (is_orthographic() ? 1.0 : -1.0);
+    vec2 here = origin, there = vec2(frame_size) - origin, inverse = 1.0 / max(abs(direction), vec2(1e-6));
+    bvec2 up = greaterThan(direction, vec2(0.0));
+    vec2 ahead = mix(here, there, up) * inverse, behind = mix(there, here, up) * inverse;
+    Line right = Line(origin, direction, min(ahead.x, ahead.y) - 1e-3, NO_REACH);
+    Line left = Line(origin, -direction, min(behind.x, behind.y) - 1e-3, NO_REACH);
+#ifdef LIMITED
+    if (is_orthographic()) {
+        right.reach = left.reach = params.radius / size;
+    } else {
+        float numerator = tangent / (size * -V.z), towards = -V.z + tangent * across.z, from = -V.z - tangent * across.z;
+        if (tangent >= 0.0 && towards > 1e-3) right.reach = numerator / towards;
+        if (tangent >= 0.0 && from > 1e-3) left.reach = numerator / from;
+    }
+#endif
+    return Lines(right, left);
 }
 
-// Derivative of the projection of P along a direction, times a positive factor.
-vec2 screen_direction(vec3 P, vec3 direction) {
-    vec2 d = is_orthographic() ? direction.xy : direction.xy * P.z - P.xy * direction.z;
-    return normalize(d * frame.lens.xy);
-}
-
-// The slice cuts the ball in a circle; seen from the eye it reaches asin(R / |P|) to either side of P.
-float ball_reach(vec3 P, vec3 V, vec3 across, vec2 origin) {
-    if (is_orthographic()) return length(across.xy * params.radius * frame.lens.xy);
-    float distance = length(P), sine = params.radius / distance;
-    if (sine >= 1.0) return 1e9;
-    vec3 edge = sine * across - sqrt(1.0 - sine * sine) * V;
-    return edge.z <= 1e-3 ? 1e9 : length(screen_of(edge) - origin);
-}
-
-// The line towards the other side.
-Line reversed(Line l, vec3 P, vec3 V, vec3 across) {
-    l.direction = -l.direction;
-    l.border = leaves_frame(l.origin, l.direction);
-    l.reach = ball_reach(P, V, -across, l.origin);
-    return l;
-}
-
-Line line_of(vec3 P, vec3 V, vec3 across, vec2 origin) {
-    Line l;
-    l.origin = origin;
-    l.direction = screen_direction(P, across);
-    l.border = leaves_frame(origin, l.direction);
-    l.reach = ball_reach(P, V, across, origin);
-    return l;
+float ball_tangent(vec3 P) {
+    float squared = dot(P, P) - params.radius * params.radius;
+    return squared > 0.0 ? params.radius * inversesqrt(squared) : -1.0;
 }
 
 // Distance of step i in pixels: at the squares of an even spacing, and at least a pixel beyond the step before.
 float step_distance(int i, float jitter, float limit) {
-    float u = (float(i) + jitter) / float(params.steps);
+    float u = (float(i) + jitter) * params.inverse_steps;
     return max(limit * u * u, float(i + 1));
 }

@@ -2,101 +2,115 @@
 //
 // A run is a piece of connected surface: either tangent plane predicts the other sample. It blocks the arc from its lowest share to
 // its highest, its back included, which lies `thickness` behind its front on the view ray. The run that starts at the receiver
-// itself blocks all between its highest point and the tangent.
+// itself blocks all between its highest point and the tangent: its highest share is 1 from the start.
+
+layout(rg32ui, binding = 6) readonly uniform uimage2D surface_image; // surface.comp
 
 // Without a radius a run is believed beyond the frame for this share of what is seen of it.
 const float BELIEVED = 0.3;
 
 struct Run {
-    bool alive, own;  // own: begins at the receiver
-    bool starts;      // begins at its own silhouette
-    float low, high;  // shares of the parts inside the ball; low > high: none
-    vec2 first, last; // ends, in the slice
-    vec2 rim;         // the point of the highest share
-    float last_share, last_distance;
+    bool alive, starts; // starts: begins at its own silhouette
+    float low, high;    // shares of the parts inside the ball; low > high: none
+    float width;        // of what is seen, times kappa
+    vec2 first, last;   // ends, in the slice
+    vec2 rim;           // the point of the highest share
+    float rim_inverse;  // 1 / depth there
+    float last_share, last_squared; // of the last sample: share, squared distance
     vec3 point, normal, light; // of the last sample
 };
 
-float thickness_of(Run r, bool ends, float step_size) {
-    if (params.fixed_thickness == 1) return params.thickness;
-    float own = params.kappa * (length(r.last - r.first) + step_size);
-    return r.starts && ends ? own : max(own, params.thickness);
-}
+// What a march needs of its line and of the frame.
+struct Walk {
+    Line line;
+    float limit, jitter, step_jitter;
+    float squared_radius, pixel;
+    float foreshortening; // depth over distance along the receiver's view ray: thickness is a length along it
+};
 
 // Ends a run: all it blocks, as far as its samples have not done so already.
-void finish(inout Sectors slots, Side s, Run r, bool ends, float step_size, float jitter) {
-    float high = r.own ? 1.0 : max(r.high, share(s, r.rim + thickness_of(r, ends, step_size) * away(s, r.rim)));
-    if (r.alive && r.low <= r.high) block(slots, sectors(r.low, high, jitter), r.light);
+void finish(inout Sectors slots, Side s, Walk k, Run r, bool ends, bool now) {
+    float thickness = max(r.width, r.starts && ends ? params.thin : params.thickness) * k.foreshortening;
+    float back = share(s, r.rim + thickness * away(s, r.rim, r.rim_inverse));
+    uvec2 mask = sectors(r.low, max(r.high, back), k.jitter);
+    block(slots, now && r.alive && r.low <= r.high ? mask : uvec2(0u), r.light);
 }
 
-void include_share(inout Run r, float c, vec2 w) {
-    r.low = min(r.low, c);
-    if (c >= r.high) r.rim = w;
-    r.high = max(r.high, c);
+// Takes the sample at distance `at`, `before` the one before.
+void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at, float before) {
+    ivec2 q = ivec2(k.line.origin + at * k.line.direction);
+    uvec2 stored_texel = imageLoad(surface_image, q).xy;
+    float depth = uintBitsToFloat(stored_texel.x), scale = is_orthographic() ? 1.0 : depth;
+    bool surface = depth != 0.0;
+    vec3 Q = position_of(q, depth), n = unpack_normal(stored_texel.y), gap = Q - run.point, to = Q - P;
+    float step_size = scale * k.pixel * (at - before);
+    bool joined = run.alive && surface && min(abs(dot(run.normal, gap)), abs(dot(n, gap))) <= params.tolerance * step_size;
+    bool nearer = gap.z < 0.0;
+#ifdef BOUNCE
+    vec3 light = sent_by(q) * (dot(n, to) < 0.0 ? 1.0 : 0.0);
+#endif
+    finish(slots, s, k, run, !surface || !nearer, !joined);
+    vec2 w = in_slice(s, to), w_in = w;
+    bool counts = true;
+#ifdef LIMITED
+    // What counts of a run is its part inside the ball: where it leaves the ball, up to there.
+    float squared = dot(to, to);
+    bool inside = squared < k.squared_radius, leaves = joined && run.last_squared < k.squared_radius;
+    w_in = inside ? w : mix(run.last, w, (k.squared_radius - run.last_squared) / (squared - run.last_squared));
+    counts = inside || leaves;
+    run.last_squared = squared;
+#endif
+    float c = share(s, w_in);
+#ifdef BOUNCE
+    block(slots, joined ? sectors(min(run.last_share, c), max(run.last_share, c), k.jitter) : uvec2(0u), light);
+    run.last_share = c;
+    run.light = light;
+#endif
+    float low = joined ? run.low : 2.0, high = joined ? run.high : -1.0;
+    bool rises = counts && c >= high;
+    run.starts = joined ? run.starts : !run.alive || nearer;
+    run.first = joined ? run.first : w;
+    run.rim = rises ? w_in : run.rim;
+    run.rim_inverse = rises ? 1.0 / depth : run.rim_inverse;
+    run.low = counts ? min(low, c) : low;
+    run.high = counts ? max(high, c) : high;
+    run.width = params.kappa * (length(w - run.first) + step_size);
+    run.alive = surface;
+    run.last = w;
+    run.point = Q;
+    run.normal = n;
 }
 
-Sectors march(Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
-    Sectors slots = all_open();
-    Run run = Run(true, true, false, 2.0, -1.0, vec2(0.0), vec2(0.0), vec2(0.0), 1.0, 0.0, P, N, vec3(0.0));
-    float limit = min(line.reach, line.border), before = 0.0, step_size = 0.0;
-    float R = params.radius;
+// Beyond the frame the last run goes on along its own tangent.
+void go_on(inout Run run, Side s, Walk k, float at) {
+    vec3 n = normal_at(ivec2(k.line.origin + at * k.line.direction));
+    vec2 facing = vec2(dot(n, s.tangent), dot(n, s.up)) + vec2(0.0, 1e-20);
+    vec2 e = vec2(facing.y, -facing.x) * inversesqrt(dot(facing, facing)), ray = away(s, run.last, 1.0);
+    if (e.x * ray.y - e.y * ray.x > 0.0) e = -e; // outwards: away from the view ray, clockwise from V
+#ifdef LIMITED
+    float b = dot(run.last, e);
+    vec2 end = run.last + e * (sqrt(max(b * b + k.squared_radius - run.last_squared, 0.0)) - b);
+    bool counts = k.line.border < k.line.reach && run.alive && run.last_squared < k.squared_radius;
+#else
+    vec2 end = run.last + e * (BELIEVED * length(run.last - run.first));
+    bool counts = run.alive;
+#endif
+    float c = counts ? share(s, end) : run.low;
+    run.rim = counts && c >= run.high ? end : run.rim;
+    run.low = min(run.low, c);
+    run.high = counts ? max(run.high, c) : run.high;
+}
+
+void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, vec3 V, float step_jitter, float jitter) {
+    Run run = Run(true, false, 2.0, 1.0, 0.0, vec2(0.0), vec2(0.0), vec2(0.0), 0.0, 1.0, 0.0, P, N, vec3(0.0));
+    Walk k = Walk(line, min(line.reach, line.border), jitter, step_jitter, params.radius * params.radius, footprint(1.0), -V.z);
+    float before = 0.0;
     for (int i = 0; i < params.steps; i++) {
-        float at = step_distance(i, step_jitter, limit);
-        if (at > limit) break;
-        ivec2 q = ivec2(floor(line.origin + at * line.direction));
-        float depth = imageLoad(depth_image, q).r;
-        bool surface = depth != 0.0;
-        vec3 Q = position_of(q, depth), n = normal_at(q), gap = Q - run.point;
-        float pixel = footprint(depth), room = params.tolerance * pixel * (at - before);
-        bool joined = run.alive && surface && min(abs(dot(run.normal, gap)), abs(dot(n, gap))) < room;
-#ifdef BOUNCE
-        vec3 light = sent_by(q) * (dot(n, P - Q) > 0.0 ? 1.0 : 0.0);
-#endif
-        bool nearer = Q.z < run.point.z;
-        vec2 w = in_slice(s, Q - P);
-        float distance = length(Q - P), c = share(s, w);
-        if (!joined) {
-            finish(slots, s, run, !surface || !nearer, step_size, jitter);
-            run.starts = !run.alive || nearer;
-            run.alive = surface;
-            run.own = false;
-            run.low = 2.0;
-            run.high = -1.0;
-            run.first = w;
-            if (distance < R) include_share(run, c, w);
-        } else {
-            bool was_inside = run.last_distance < R, is_inside = distance < R;
-            if (was_inside || is_inside) {
-                float f = clamp((R - run.last_distance) / (distance - run.last_distance), 0.0, 1.0);
-                if (was_inside == is_inside) f = 1.0;
-#ifdef BOUNCE
-                block(slots, sectors(min(run.last_share, c), max(run.last_share, c), jitter), light);
-#endif
-                include_share(run, was_inside ? run.last_share : mix(run.last_share, c, f), was_inside ? run.last : mix(run.last, w, f));
-                include_share(run, is_inside ? c : mix(run.last_share, c, f), is_inside ? w : mix(run.last, w, f));
-            }
-        }
-        run.last = w;
-        run.last_share = c;
-        run.last_distance = distance;
-        run.point = Q;
-        run.normal = n;
-#ifdef BOUNCE
-        run.light = light;
-#endif
-        step_size = (at - before) * pixel;
+        float at = step_distance(i, step_jitter, k.limit);
+        if (at > k.limit) break;
+        visit(slots, run, s, k, P, at, before);
         before = at;
     }
-    // Beyond the frame the last run goes on along its own tangent.
-    if (line.border < line.reach && run.alive && run.last_distance < R) {
-        vec2 facing = normalize(vec2(dot(run.normal, s.tangent), dot(run.normal, s.up)) + vec2(0.0, 1e-20)), e = vec2(facing.y, -facing.x);
-        vec2 ray = away(s, run.last);
-        if (e.x * ray.y - e.y * ray.x > 0.0) e = -e; // outwards: away from the view ray, clockwise from V
-        float b = dot(run.last, e);
-        float to_ball = sqrt(max(b * b + R * R - run.last_distance * run.last_distance, 0.0)) - b;
-        vec2 end = run.last + e * (R < UNLIMITED ? to_ball : min(to_ball, BELIEVED * length(run.last - run.first)));
-        include_share(run, share(s, end), end);
-    }
-    finish(slots, s, run, false, step_size, jitter);
-    return slots;
+    go_on(run, s, k, before);
+    finish(slots, s, k, run, false, true);
 }

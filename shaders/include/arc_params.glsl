@@ -1,8 +1,8 @@
-layout(std140, binding = 1) uniform Params {
+layout(std140, binding = 1) uniform ParamsBlock {
     float radius;        // R, scene units
-    float thickness;     // of runs of unknown width; where `fixed_thickness`, of everything
+    float thickness;     // least thickness of runs of unknown width
     float kappa;         // thickness of a run over its width
-    int fixed_thickness;
+    float thin;          // least thickness of a run of known width: 0, or where the user has fixed it the same
     int slices, steps;   // steps a side
     int seed;
     int planes;          // how many planes are in use
@@ -10,9 +10,30 @@ layout(std140, binding = 1) uniform Params {
     float level;
     float strength;
     int suns;
-    int exitant, unused0, unused1, unused2;
+    int exitant;
+    float inverse_steps;
+    int unused0, unused1;
     vec4 sun_direction[4]; // camera space, unit
     vec4 sun_light[4];     // rgb: irradiance over pi of a surface that faces the sun
-} params;
+} stored;
+
+// A copy made before main, as in frame.glsl.
+struct Params {
+    float radius;
+    float thickness;
+    float kappa;
+    float thin;
+    int slices;
+    int steps;
+    int seed;
+    int planes;
+    float tolerance;
+    float level;
+    float strength;
+    int suns;
+    int exitant;
+    float inverse_steps;
+};
+Params params = Params(stored.radius, stored.thickness, stored.kappa, stored.thin, stored.slices, stored.steps, stored.seed, stored.planes, stored.tolerance, stored.level, stored.strength, stored.suns, stored.exitant, stored.inverse_steps);
 
 const float UNLIMITED = 1e12; // radii from here on mean: no limit

@@ -3,78 +3,88 @@
 //   hit inside the frame:  it must lie behind the surface recorded there, and inside the plane's support
 //   hit outside the frame: where the slice's line leaves the frame, the plane must lie at the recorded surface or behind it
 
-struct Plane {
-    vec4 equation; // xyz unit normal, w offset: dot(xyz, x) = w
-    vec4 u, v;     // xyz axis of the support, w its centre along it
-    vec4 half_size;
-    vec4 light; // rgb: mean of what its pixels send
-    uvec4 cells[2]; // 16 x 16 bits over the support: the picture does not show the plane to be absent there
-};
-layout(std140, binding = 2) uniform Planes { Plane planes[12]; };
+#include "include/arc_plane.glsl"
+layout(rgba32f, binding = 7) readonly uniform image2D planes_image;
 
-const int CHORDS = 6; // directions tested of the arc that a plane could block
+const int CHORDS = 3; // directions tested of the arc that a plane could block
 const float ROOM = 0.004; // of the depth: as far as a plane may lie off its own surface, and a little more
-
-// Depth at which a pixel's ray meets a plane; huge if it does not.
-float plane_depth(Plane k, vec2 screen) {
-    vec3 ray = ray_at(screen);
-    float along = is_orthographic() ? k.equation.z : dot(k.equation.xyz, ray);
-    float z = (is_orthographic() ? k.equation.w - dot(k.equation.xy, ray.xy) : k.equation.w) / along;
-    return z > 0.0 ? z : 1e30;
-}
 
 // True if the recorded surface at a pixel lies in front of depth z, or (with a negative sign of ROOM) at it.
 bool hidden(float recorded, float z, float room) { return recorded != 0.0 && z > recorded * (1.0 + room); }
 
-bool border_allows(Plane k, Line line) {
-    ivec2 q = ivec2(floor(line.origin + line.border * line.direction));
-    float recorded = imageLoad(depth_image, q).r;
-    return hidden(recorded, plane_depth(k, vec2(q) + 0.5), -ROOM);
+// The pixel where a line leaves the frame.
+struct Border { vec2 ray; float recorded; };
+
+Border border_of(Line line) {
+    ivec2 q = ivec2(line.origin + line.border * line.direction);
+    return Border(ray_at(vec2(q) + 0.5).xy, imageLoad(depth_image, q).r);
 }
 
-bool supported(Plane k, vec3 X) {
-    vec2 at = vec2(dot(k.u.xyz, X) - k.u.w, dot(k.v.xyz, X) - k.v.w) / k.half_size.xy;
-    uvec2 cell = uvec2(clamp(at * 8.0 + 8.0, 0.0, 15.0));
-    uvec4 half_rows = cell.y < 8u ? k.cells[0] : k.cells[1];
-    uint word = (cell.y & 4u) == 0u ? ((cell.y & 2u) == 0u ? half_rows.x : half_rows.y) : ((cell.y & 2u) == 0u ? half_rows.z : half_rows.w);
-    return all(lessThanEqual(abs(at), vec2(1.0))) && ((word >> (cell.x + 16u * (cell.y & 1u))) & 1u) == 1u;
+// Whether a plane may go on beyond the frame there.
+bool allows(Border b, vec4 equation) {
+    float across = dot(equation.xy, b.ray);
+    float z = is_orthographic() ? (equation.w - across) / equation.z : equation.w / (across + equation.z);
+    return hidden(b.recorded, z > 0.0 ? z : 1e30, -ROOM);
 }
 
-// Without a radius a plane is not believed farther from its support than the support is wide.
-bool near_support(Plane k, vec3 X) {
-    vec2 at = vec2(dot(k.u.xyz, X) - k.u.w, dot(k.v.xyz, X) - k.v.w) / k.half_size.xy;
-    return all(lessThanEqual(abs(at), vec2(1.5)));
-}
-
-// Whether the plane's point X counts.
-bool stands(Plane k, vec3 X, bool border) {
+// Whether the plane's point X counts; `here`: its place on the support, -1 .. 1. Without a radius a plane is not believed farther from
+// its support than the support is wide.
+bool stands(int plane, vec3 X, vec2 here, bool beyond_frame) {
     vec2 screen = screen_of(X);
-    ivec2 q = ivec2(floor(screen));
-    if (X.z <= 0.0 || !in_frame(q)) return border && (params.radius < UNLIMITED || near_support(k, X));
-    return supported(k, X) && hidden(imageLoad(depth_image, q).r, X.z, ROOM);
+    ivec2 q = ivec2(screen), cell = ivec2(clamp(here * 8.0 + 8.0, 0.0, 15.0));
+    bool inside = X.z > 0.0 && all(greaterThanEqual(screen, vec2(0.0))) && all(lessThan(q, frame_size));
+    vec4 rows = imageLoad(planes_image, ivec2(PLANE_CELLS + (cell.y >> 2), plane));
+    uint row = uint((cell.y & 2) == 0 ? ((cell.y & 1) == 0 ? rows.x : rows.y) : ((cell.y & 1) == 0 ? rows.z : rows.w));
+    bool supported = max(abs(here.x), abs(here.y)) <= 1.0 && ((row >> cell.x) & 1u) == 1u;
+    bool behind = hidden(imageLoad(depth_image, inside ? q : ivec2(0)).r, X.z, ROOM);
+#ifdef LIMITED
+    return inside ? supported && behind : beyond_frame;
+#else
+    return inside ? supported && behind : beyond_frame && max(abs(here.x), abs(here.y)) <= 1.5;
+#endif
 }
 
-void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, Line right, Line left, vec3 P, float jitter) {
+vec2 turned(vec2 d, vec2 by) { return vec2(d.x * by.x - d.y * by.y, d.x * by.y + d.y * by.x); }
+
+void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, Lines lines, vec3 P, float jitter) {
+    Border right = border_of(lines.right), left = border_of(lines.left);
     for (int i = 0; i < params.planes; i++) {
-        Plane k = planes[i];
-        // Distance to the plane along direction t: h / (m cos(t - t0)).
-        float h = k.equation.w - dot(k.equation.xyz, P);
-        vec2 normal = vec2(dot(k.equation.xyz, V), dot(k.equation.xyz, across)) * (h < 0.0 ? -1.0 : 1.0);
-        float m = length(normal), reach = abs(h) / max(m * params.radius, 1e-20);
-        bool relevant = reach < 1.0 && abs(h) > ROOM * P.z;
-        float t0 = atan(normal.y, normal.x), half_angle = fast_acos(min(reach, 1.0));
-        if (t0 - n > PI) t0 -= 2.0 * PI;
-        if (t0 - n < -PI) t0 += 2.0 * PI;
+        vec4 equation = imageLoad(planes_image, ivec2(PLANE_EQUATION, i));
+        vec4 u = imageLoad(planes_image, ivec2(PLANE_U, i)), v = imageLoad(planes_image, ivec2(PLANE_V, i));
+        // Distance to the plane along direction t: height / (normal . (cos t, sin t)), least at t0.
+        float h = equation.w - dot(equation.xyz, P), height = abs(h);
+        vec2 normal = vec2(dot(equation.xyz, V), dot(equation.xyz, across)) * (h < 0.0 ? -1.0 : 1.0);
+#ifdef LIMITED
+        float reach = min(height * inversesqrt(max(dot(normal, normal), 1e-30)) / params.radius, 1.0);
+        float half_angle = fast_atan(sqrt(1.0 - reach * reach), reach);
+#else
+        float half_angle = 0.5 * PI - 1e-4;
+#endif
+        float t0 = fast_atan(abs(normal.y), normal.x) * (normal.y < 0.0 ? -1.0 : 1.0);
+        t0 -= t0 - n > PI ? 2.0 * PI : t0 - n < -PI ? -2.0 * PI : 0.0;
         float from = max(t0 - half_angle, n - 0.5 * PI), to = min(t0 + half_angle, n + 0.5 * PI);
-        relevant = relevant && from < to;
-        if (!relevant) continue;
-        bool border_right = border_allows(k, right), border_left = border_allows(k, left);
-        vec3 sent = h < 0.0 ? k.light.rgb : vec3(0.0); // from the side that the camera sees
-        float width = (to - from) / float(CHORDS), c = share_at(s, from);
+        float width = (to - from) / float(CHORDS);
+        bool relevant = width > 0.0 && height > ROOM * P.z;
+        bool goes_right = allows(right, equation), goes_left = allows(left, equation);
+#ifdef BOUNCE
+        vec3 sent = h < 0.0 ? imageLoad(planes_image, ivec2(PLANE_LIGHT, i)).rgb : vec3(0.0); // from the side that the camera sees
+#else
+        vec3 sent = vec3(0.0);
+#endif
+        vec2 edge = vec2(cos(from), sin(from)), half_turn = vec2(cos(0.5 * width), sin(0.5 * width));
+        float c = share_at(s, from, edge);
         for (int j = 0; j < CHORDS; j++) {
-            float t = from + (float(j) + jitter) * width, next = share_at(s, from + float(j + 1) * width);
-            vec3 X = P + abs(h) / (m * cos(t - t0)) * (cos(t) * V + sin(t) * across);
-            if (stands(k, X, t > 0.0 ? border_right : border_left)) block(slots, sectors(c, next, jitter), sent);
+            // The direction tested is evenly distributed over the chord's shares, not its angles: straight on either side of the middle.
+            vec2 middle = turned(edge, half_turn);
+            edge = turned(middle, half_turn);
+            float t = from + (float(j) + 0.5) * width, half_way = share_at(s, t, middle), next = share_at(s, t + 0.5 * width, edge);
+            float tested = mix(c, next, jitter), below = tested - half_way;
+            float aside = 0.5 * width * below / max(below < 0.0 ? half_way - c : next - half_way, 1e-6), square = aside * aside;
+            vec2 d = turned(middle, vec2(1.0 - square * (0.5 - square / 24.0), aside * (1.0 - square * (1.0 / 6.0 - square / 120.0))));
+            vec3 X = P + height / dot(normal, d) * (d.x * V + d.y * across);
+            vec2 here = vec2(dot(u.xyz, X) - u.w, dot(v.xyz, X) - v.w);
+            bool blocks = relevant && stands(i, X, here, d.y > 0.0 ? goes_right : goes_left);
+            block(slots, blocks ? sectors(c, next, jitter) : uvec2(0u), sent);
             c = next;
         }
     }

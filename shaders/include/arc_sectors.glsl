@@ -37,11 +37,3 @@ void block(inout Sectors s, uvec2 mask, vec3 light) {
 #endif
     s.blocked |= mask;
 }
-
-// The other side's sectors are counted from the other end.
-void add_mirrored(inout Sectors s, Sectors other) {
-    s.blocked |= bitfieldReverse(other.blocked.yx);
-#ifdef BOUNCE
-    s.light += other.light;
-#endif
-}

@@ -17,11 +17,12 @@ struct Side {
     vec2 eye;     // where the eye is, or for an orthographic camera its direction
 };
 
-// acos to 7e-5 (Abramowitz and Stegun 4.4.45).
-float fast_acos(float x) {
-    float a = abs(x);
-    float r = sqrt(1.0 - a) * (1.5707288 + a * (-0.2121144 + a * (0.0742610 - 0.0187293 * a)));
-    return x < 0.0 ? PI - r : r;
+// atan(y / x) of y >= 0, any x, to 1e-5 (Abramowitz and Stegun 4.4.49, and its reflections): 0 .. PI.
+float fast_atan(float y, float x) {
+    float size = abs(x), a = min(y, size) / max(max(y, size), 1e-30), b = a * a;
+    float t = a * (0.9998660 + b * (-0.3302995 + b * (0.1801410 + b * (-0.0851330 + b * 0.0208351))));
+    t = y > size ? 0.5 * PI - t : t;
+    return x < 0.0 ? PI - t : t;
 }
 
 // Below this sine over the tangent plane nothing counts: rounding and half-float normals live there, and 1e-5 of the weight.
@@ -32,9 +33,9 @@ Side side_of(vec3 V, vec3 outwards, vec3 N, float eye_distance, out float n, out
     Side s;
     float up = dot(N, V), sideways = dot(N, outwards), squared = max(up * up + sideways * sideways, 1e-12);
     float inverse_length = inversesqrt(squared);
-    n = atan(sideways, up);
     s.cos_n = up * inverse_length;
     s.sin_n = sideways * inverse_length;
+    n = fast_atan(abs(sideways), up) * (sideways < 0.0 ? -1.0 : 1.0);
     weight = squared * inverse_length * (s.cos_n + n * s.sin_n);
     s.tangent = s.cos_n * outwards - s.sin_n * V;
     s.up = s.cos_n * V + s.sin_n * outwards;
@@ -55,22 +56,21 @@ Side opposite(Side s, float n) {
     return s;
 }
 
-// c of the direction to a point; 1 at and below the tangent plane.
+// c of the direction to a point on this side; 1 at and below the tangent plane.
 float share(Side s, vec2 w) {
-    float l = inversesqrt(max(dot(w, w), 1e-30));
-    float ct = clamp((w.y * s.cos_n - w.x * s.sin_n) * l, -1.0, 1.0), st = max((w.y * s.sin_n + w.x * s.cos_n) * l, 0.0);
-    float t = fast_acos(ct);
-    float c = (0.5 * (s.cos_n * st * st + s.sin_n * (t - st * ct)) + s.below) * s.scale;
-    return w.y <= max(GRAZING / l, s.least) ? 1.0 : clamp(c, 0.0, 1.0);
+    float x = w.y * s.cos_n - w.x * s.sin_n, y = max(w.y * s.sin_n + w.x * s.cos_n, 0.0), squared = dot(w, w);
+    float t = fast_atan(y, x), c = (0.5 * y * (s.cos_n * y - s.sin_n * x) / max(squared, 1e-30) + 0.5 * s.sin_n * t + s.below) * s.scale;
+    return w.y <= s.least || w.y * w.y <= GRAZING * GRAZING * squared ? 1.0 : clamp(c, 0.0, 1.0);
 }
 
 vec2 in_slice(Side s, vec3 w) { return vec2(dot(w, s.tangent), dot(w, s.lift)); }
 
-// Unit vector from the eye through a point, on which the surface hides what is behind it.
-vec2 away(Side s, vec2 w) { return is_orthographic() ? -s.eye : normalize(w - s.eye); }
+// Along the view ray through a point, on which the surface hides what is behind it: as far as depth grows by 1.
+vec2 away(Side s, vec2 w, float inverse_depth) { return is_orthographic() ? -s.eye : (w - s.eye) * inverse_depth; }
 
-// c of a signed angle.
-float share_at(Side s, float t) {
-    float st = sin(t), f = 0.5 * (s.cos_n * st * st + s.sin_n * (t - st * cos(t)));
+// c of a signed angle, given with its cosine and sine.
+float share_at(Side s, float t, vec2 d) {
+    float f = 0.5 * (s.cos_n * d.y * d.y + s.sin_n * (t - d.y * d.x));
     return clamp(((t < 0.0 ? -f : f) + s.below) * s.scale, 0.0, 1.0);
 }
+float share_at(Side s, float t) { return share_at(s, t, vec2(cos(t), sin(t))); }

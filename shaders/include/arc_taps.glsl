@@ -1,7 +1,6 @@
 // The march of the older methods, sample by sample: the horizon (all beyond the highest sample is blocked) and the bitmask (each
 // sample blocks from its front to `thickness` behind it on its view ray).
-Sectors march(Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
-    Sectors slots = all_open();
+void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, vec3 V, float step_jitter, float jitter) {
     float limit = min(line.reach, line.border), lowest = 1.0;
     for (int i = 0; i < params.steps; i++) {
         float at = step_distance(i, step_jitter, limit);
@@ -15,11 +14,10 @@ Sectors march(Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter
 #ifdef HORIZON
         if (counts) lowest = min(lowest, front);
 #else
-        if (counts) slots.blocked |= sectors(front, share(s, w + params.thickness * away(s, w)), jitter);
+        if (counts) slots.blocked |= sectors(front, share(s, w + params.thickness * -V.z * away(s, w, 1.0 / depth)), jitter);
 #endif
     }
 #ifdef HORIZON
-    slots.blocked = sectors(lowest, 1.0, jitter);
+    slots.blocked |= sectors(lowest, 1.0, jitter);
 #endif
-    return slots;
 }

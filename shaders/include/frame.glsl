@@ -13,6 +13,10 @@ layout(std140, binding = 0) uniform Frame {
     vec4 env;           // level count - 1, width, height of the map, 1 if it is constant
     vec4 sh[9];         // rgb: plain radiance coefficients in map space
 } frame;
+// Copies made before main: llvmpipe reads a uniform inside any control flow once for every lane.
+vec4 frame_lens = vec4(frame.lens.x, frame.lens.y, frame.lens.z, frame.lens.w);
+vec2 pixel_slope = 1.0 / frame_lens.xy; // of a ray's xy, per pixel
+ivec2 frame_size = ivec2(frame.size.x, frame.size.y);
 
 layout(r32f, binding = 0) readonly uniform image2D depth_image;
 layout(rgba32f, binding = 1) readonly uniform image2D normal_image;
@@ -26,15 +30,20 @@ ivec2 this_pixel() { return ivec2(gl_FragCoord.xy); }
 ivec2 this_pixel() { return tile.xy + ivec2(gl_GlobalInvocationID.xy); }
 bool in_tile(ivec2 p) { return all(lessThan(p, tile.zw)); }
 #endif
-bool in_frame(ivec2 p) { return all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, frame.size.xy)); }
-bool is_orthographic() { return frame.size.z == 1; }
+bool in_frame(ivec2 p) { return all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, frame_size)); }
+// A permutation, because a rasteriser on the CPU pays for both branches.
+#ifdef ORTHOGRAPHIC
+bool is_orthographic() { return true; }
+#else
+bool is_orthographic() { return false; }
+#endif
 
 // Planar depth; 0 where there is no surface or outside the frame.
 float depth_at(ivec2 p) { return in_frame(p) ? imageLoad(depth_image, p).r : 0.0; }
 vec3 normal_at(ivec2 p) { return imageLoad(normal_image, p).xyz; }
 
 // Direction of a screen point's ray with z = 1 (perspective).
-vec3 ray_at(vec2 screen) { return vec3((screen - frame.lens.zw) / frame.lens.xy, 1.0); }
+vec3 ray_at(vec2 screen) { return vec3((screen - frame_lens.zw) * pixel_slope, 1.0); }
 
 vec3 position_at(vec2 screen, float depth) {
     vec3 ray = ray_at(screen);
@@ -48,13 +57,13 @@ vec3 view_of(vec3 point) { return is_orthographic() ? vec3(0.0, 0.0, -1.0) : -no
 // Where a point appears on the screen, in pixels. Only for points in front of the eye.
 vec2 screen_of(vec3 point) {
     vec2 scaled = is_orthographic() ? point.xy : point.xy / point.z;
-    return scaled * frame.lens.xy + frame.lens.zw;
+    return scaled * frame_lens.xy + frame_lens.zw;
 }
 bool in_front(vec3 point) { return is_orthographic() || point.z > 0.0; }
 
 // Size of a pixel at a depth, in scene units: a surface facing the eye at that depth covers this much per pixel.
 float footprint(float depth) {
-    float per_pixel = 1.0 / min(frame.lens.x, frame.lens.y);
+    float per_pixel = 1.0 / min(frame_lens.x, frame_lens.y);
     return is_orthographic() ? per_pixel : per_pixel * depth;
 }
 // The largest error float rounding can put on the coordinates of a point.

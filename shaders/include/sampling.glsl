@@ -17,6 +17,13 @@ vec2 pixel_hash(uvec2 v) {
     return vec2(v >> 8u) * (1.0 / 16777216.0);
 }
 
+// Three numbers per pixel: a lattice whose neighbours differ evenly (Roberts' R2 sequence), so that a small window holds a stratified
+// set of the first; and a hash.
+vec3 pixel_noise(ivec2 p, int seed) {
+    uvec2 u = uvec2(p) + uint(seed) * 7919u;
+    return vec3(float((u.x * 3242174889u + u.y * 2447445414u) >> 8u) * (1.0 / 16777216.0), pixel_hash(u));
+}
+
 // Orthonormal tangent and bitangent of a unit vector without a fixed up vector (Duff et al. 2017, JCGT 6/1).
 mat3 tangent_frame(vec3 n) {
     float s = n.z >= 0.0 ? 1.0 : -1.0;
@@ -24,3 +31,10 @@ mat3 tangent_frame(vec3 n) {
     float b = n.x * n.y * a;
     return mat3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
 }
+
+// A unit vector in 30 bits, to a thousandth: for tests of connection.
+uint pack_normal(vec3 n) {
+    uvec3 v = uvec3(clamp(n * 511.5 + 512.0, vec3(0.0), vec3(1023.0)));
+    return v.x | v.y << 10u | v.z << 20u;
+}
+vec3 unpack_normal(uint v) { return vec3(uvec3(v, v >> 10u, v >> 20u) & 1023u) * (1.0 / 511.5) - (511.5 / 511.5); }

@@ -28,7 +28,7 @@ uint this_item() { return gl_WorkGroupID.x * 64u + gl_LocalInvocationIndex; }
 uint batch_size() { return uint(tile.y - tile.x); }
 ivec2 pixel_of(uint item) {
     int i = int(pixels[uint(tile.x) + item]);
-    return ivec2(i % frame.size.x, i / frame.size.x);
+    return ivec2(i % frame_size.x, i / frame_size.x);
 }
 
 vec3 to_mesh(vec3 d) {

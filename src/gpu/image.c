@@ -12,6 +12,8 @@ static GLenum transfer_format(GLenum format)
     case GL_RG32F:
     case GL_RG16F:
         return GL_RG;
+    case GL_RG32UI:
+        return GL_RG_INTEGER;
     default:
         return GL_RGBA;
     }
@@ -70,7 +72,10 @@ void gpu_image_download(const gpu_image *image, float *pixels)
 
 void gpu_image_clear(gpu_image *image, const float value[4])
 {
-    glClearTexImage(image->id, 0, transfer_format(image->format), GL_FLOAT, value);
+    const GLuint whole[4] = {(GLuint)value[0], (GLuint)value[1], (GLuint)value[2], (GLuint)value[3]};
+    bool integer = image->format == GL_RG32UI;
+    glClearTexImage(image->id, 0, transfer_format(image->format), integer ? GL_UNSIGNED_INT : GL_FLOAT,
+                    integer ? (const void *)whole : value);
 }
 
 void gpu_bind_image(int unit, const gpu_image *image, GLenum access)

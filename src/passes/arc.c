@@ -20,47 +20,46 @@ arc_params arc_params_of(const pass_context *c)
     arc_params p = {
         .radius = (float)s->radius,
         .thickness = isinf(s->thickness) ? HUGE_LENGTH : (float)s->thickness,
-        .kappa = KAPPA,
-        .fixed_thickness = s->thickness_fixed,
+        .kappa = s->thickness_fixed ? 0.0f : KAPPA,
         .seed = s->seed,
         .planes = c->planes.count,
         .tolerance = TOLERANCE,
         .level = (float)s->env_level,
         .strength = (float)s->bounce_strength,
     };
+    if (s->thickness_fixed) p.thin = p.thickness;
     arc_grid(s->samples, &p.slices, &p.steps);
+    p.inverse_steps = 1.0f / (float)p.steps;
     return p;
 }
 
 // ---- planes
 
-// shaders/include/arc_planes.glsl
-typedef struct plane_block {
-    float equation[4], u[4], v[4], half_size[4], light[4];
-    unsigned cells[PLANE_CELLS / 2]; // two rows each
-} plane_block;
+// Columns of the planes' image: shaders/include/arc_plane.glsl.
+enum { EQUATION, AXIS_U, AXIS_V, LIGHT, CELLS, COLUMNS = CELLS + PLANE_CELLS / 4 };
 
 static void put(float to[4], vec3 a, double w) { to[0] = (float)a.x, to[1] = (float)a.y, to[2] = (float)a.z, to[3] = (float)w; }
+
+static void put_plane(float row[COLUMNS][4], const plane *p, double room)
+{
+    put(row[EQUATION], p->normal, p->offset);
+    for (int i = 0; i < 2; i++) put(row[AXIS_U + i], v3_scale(p->axis[i], 1.0 / p->half[i]), p->centre[i] / p->half[i]);
+    put(row[LIGHT], v3(0, 0, 0), room);
+    for (int y = 0; y < PLANE_CELLS; y++) row[CELLS + y / 4][y % 4] = (float)p->cells[y];
+}
 
 // Finds the planes, once a frame, and puts them where the shader reads them.
 static bool make_planes(pass_context *c, error *e)
 {
-    if (!c->set.planes || c->plane_uniforms) return true;
+    if (!c->set.planes || c->plane_image.id) return true;
     if (!planes_find(c->gb, &c->planes, e)) return false;
-    plane_block blocks[PLANES_MAX] = {0};
-    for (int i = 0; i < c->planes.count; i++) {
-        const plane *p = &c->planes.planes[i];
-        put(blocks[i].equation, p->normal, p->offset);
-        put(blocks[i].u, p->axis[0], p->centre[0]);
-        put(blocks[i].v, p->axis[1], p->centre[1]);
-        put(blocks[i].half_size, v3(p->half[0], p->half[1], c->planes.room), 0);
-        for (int y = 0; y < PLANE_CELLS; y++) blocks[i].cells[y / 2] |= (unsigned)p->cells[y] << 16 * (y & 1);
-    }
+    float rows[PLANES_MAX][COLUMNS][4] = {0};
+    for (int i = 0; i < c->planes.count; i++) put_plane(rows[i], &c->planes.planes[i], c->planes.room);
     for (int i = 0; i < c->planes.count; i++)
         log_info(c->log, "plane %d: %.1f %% of the surfaces, %.3g x %.3g scene units", i + 1, 100.0 * c->planes.planes[i].share,
                  2.0 * c->planes.planes[i].half[0], 2.0 * c->planes.planes[i].half[1]);
-    c->plane_uniforms = gpu_uniforms_make(sizeof blocks);
-    gpu_uniforms_set(c->plane_uniforms, 2, blocks, sizeof blocks);
+    if (!gpu_image_make(c->g, &c->plane_image, GL_RGBA32F, COLUMNS, PLANES_MAX, 1, e)) return false;
+    gpu_image_upload(&c->plane_image, 0, rows[0][0]);
     return true;
 }
 
@@ -95,6 +94,13 @@ static void put_suns(const pass_context *c, arc_params *p)
 
 // ---- the passes
 
+static bool make_surface(pass_context *c, error *e)
+{
+    if (c->surface.id) return true;
+    const pass_binding bindings[] = {{2, &c->surface, GL_WRITE_ONLY}};
+    return pass_make(c, &c->surface, GL_RG32UI, 0.0f, e) && pass_run(c, "surface", NULL, NULL, 0, bindings, 1, false, e);
+}
+
 static const char *with_planes(const pass_context *c, const char *defines, char *buf, size_t size)
 {
     snprintf(buf, size, "%s%s", defines, c->planes.count ? "PLANES 1\n" : "");
@@ -108,8 +114,11 @@ static bool run_occlusion(pass_context *c, const char *defines, error *e)
     snprintf(with_bent, sizeof with_bent, "%s%s", defines, c->want_bent ? "BENT 1\n" : "");
     if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e)) return false;
     if (c->want_bent && !pass_make(c, &c->bent, GL_RGBA32F, 0.0f, e)) return false;
-    const pass_binding bindings[] = {{2, &c->occlusion, GL_WRITE_ONLY}, {3, &c->bent, GL_WRITE_ONLY}};
-    return pass_run(c, "arc", with_planes(c, with_bent, buf, sizeof buf), &params, sizeof params, bindings, 2, false, e);
+    const pass_binding bindings[] = {{2, &c->occlusion, GL_WRITE_ONLY},
+                                     {3, &c->bent, GL_WRITE_ONLY},
+                                     {6, &c->surface, GL_READ_ONLY},
+                                     {7, &c->plane_image, GL_READ_ONLY}};
+    return pass_run(c, "arc", with_planes(c, with_bent, buf, sizeof buf), &params, sizeof params, bindings, 4, false, e);
 }
 
 // Light comes from any distance, so its march has no radius.
@@ -124,9 +133,12 @@ static bool run_light(pass_context *c, error *e)
     if (c->want_visibility && !pass_make(c, &c->visibility, GL_R32F, 1.0f, e)) return false;
     gpu_image whole = c->environment;
     if (c->sunless->map.id) c->environment = c->sunless->map;
-    const pass_binding bindings[] = {{2, &c->visibility, GL_WRITE_ONLY}, {3, &c->radiance, GL_WRITE_ONLY}};
+    const pass_binding bindings[] = {{2, &c->visibility, GL_WRITE_ONLY},
+                                     {3, &c->radiance, GL_WRITE_ONLY},
+                                     {6, &c->surface, GL_READ_ONLY},
+                                     {7, &c->plane_image, GL_READ_ONLY}};
     const char *defines = c->want_visibility ? "RUNS 1\nLIGHT 1\nVISIBILITY 1\n" : "RUNS 1\nLIGHT 1\n";
-    bool ok = pass_run(c, "arc", with_planes(c, defines, buf, sizeof buf), &params, sizeof params, bindings, 2, false, e);
+    bool ok = pass_run(c, "arc", with_planes(c, defines, buf, sizeof buf), &params, sizeof params, bindings, 4, false, e);
     c->environment = whole;
     return ok;
 }
@@ -136,7 +148,7 @@ bool pass_bitmask(pass_context *c, error *e) { return run_occlusion(c, "BITMASK 
 
 bool pass_arc(pass_context *c, error *e)
 {
-    if (!make_planes(c, e) || !run_occlusion(c, "RUNS 1\n", e)) return false;
+    if (!make_planes(c, e) || !make_surface(c, e) || !run_occlusion(c, "RUNS 1\n", e)) return false;
     return !(c->want_radiance || c->want_visibility) || run_light(c, e);
 }
 
@@ -144,19 +156,18 @@ bool pass_arc(pass_context *c, error *e)
 static bool light_planes(pass_context *c, const arc_params *params, const gpu_image *sender, const gpu_image *albedo, error *e)
 {
     if (c->planes.count == 0) return true;
-    GLuint program = gpu_program(c->g, "plane_light.comp", NULL, e);
+    GLuint program = pass_program(c, "plane_light.comp", NULL, e);
     if (!program) return false;
     glUseProgram(program);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, c->frame_uniforms);
     gpu_uniforms_set(c->params_uniforms, 1, params, sizeof *params);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, c->plane_uniforms);
+    gpu_bind_image(7, &c->plane_image, GL_READ_WRITE);
     gpu_bind_image(0, &c->depth, GL_READ_ONLY);
     gpu_bind_image(1, &c->normal, GL_READ_ONLY);
     gpu_bind_image(4, sender, GL_READ_ONLY);
     gpu_bind_image(5, albedo, GL_READ_ONLY);
     glDispatchCompute(1, 1, 1);
-    glMemoryBarrier(GL_UNIFORM_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-    glBindBufferBase(GL_UNIFORM_BUFFER, 2, c->plane_uniforms);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     return true;
 }
 
@@ -166,12 +177,16 @@ bool pass_arc_bounce(pass_context *c, error *e)
     bool exitant = !c->set.relight;
     const gpu_image *sender = exitant ? &c->beauty : &c->radiance, *albedo = exitant ? &c->beauty : &c->albedo;
     char buf[128];
-    if (!make_planes(c, e)) return false;
+    if (!make_planes(c, e) || !make_surface(c, e)) return false;
     arc_params params = arc_params_of(c);
     params.radius = HUGE_LENGTH;
     params.exitant = exitant;
     if (!light_planes(c, &params, sender, albedo, e) || !pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e)) return false;
-    const pass_binding bindings[] = {{3, &c->indirect, GL_WRITE_ONLY}, {4, sender, GL_READ_ONLY}, {5, albedo, GL_READ_ONLY}};
-    return pass_run(c, "arc", with_planes(c, "RUNS 1\nBOUNCE 1\n", buf, sizeof buf), &params, sizeof params, bindings, 3, false,
+    const pass_binding bindings[] = {{3, &c->indirect, GL_WRITE_ONLY},
+                                     {4, sender, GL_READ_ONLY},
+                                     {5, albedo, GL_READ_ONLY},
+                                     {6, &c->surface, GL_READ_ONLY},
+                                     {7, &c->plane_image, GL_READ_ONLY}};
+    return pass_run(c, "arc", with_planes(c, "RUNS 1\nBOUNCE 1\n", buf, sizeof buf), &params, sizeof params, bindings, 5, false,
                     e);
 }

@@ -5,11 +5,12 @@
 #include "passes/pass.h"
 
 typedef struct arc_params {
-    float radius, thickness, kappa;
-    int fixed_thickness;
+    float radius, thickness, kappa, thin;
     int slices, steps, seed, planes;
     float tolerance, level, strength;
-    int suns, exitant, unused[3];
+    int suns, exitant;
+    float inverse_steps;
+    int unused[2];
     float sun_direction[4][4], sun_light[4][4];
 } arc_params;
 

@@ -107,16 +107,16 @@ bool pass_begin(pass_context *c, gpu *g, const gbuffer *gb, const environment *e
 
 void pass_end(pass_context *c)
 {
-    gpu_image *images[] = {&c->depth,          &c->normal,        &c->albedo,    &c->beauty,     &c->material,  &c->emission,
-                           &c->diffuse_direct, &c->coverage,      &c->occlusion, &c->visibility, &c->radiance,  &c->indirect,
-                           &c->specular,       &c->diffuse_share, &c->composite, &c->diffuse,    &c->depthmask, &c->bent,
-                           &c->sh[0],          &c->sh[1],         &c->sh[2],     &c->sh[3],      &c->sh[4]};
+    gpu_image *images[] = {&c->depth,    &c->normal,         &c->albedo,   &c->beauty,        &c->material,
+                           &c->emission, &c->diffuse_direct, &c->coverage, &c->occlusion,     &c->visibility,
+                           &c->radiance, &c->indirect,       &c->specular, &c->diffuse_share, &c->composite,
+                           &c->diffuse,  &c->depthmask,      &c->bent,     &c->sh[0],         &c->sh[1],
+                           &c->sh[2],    &c->sh[3],          &c->sh[4],    &c->surface,       &c->plane_image};
     for (size_t i = 0; i < sizeof images / sizeof *images; i++) gpu_image_free(images[i]);
     gpu_uniforms_free(c->frame_uniforms);
     gpu_uniforms_free(c->params_uniforms);
     gpu_tiles_free(&c->tiles);
-    gpu_uniforms_free(c->plane_uniforms);
-    c->frame_uniforms = c->params_uniforms = c->plane_uniforms = 0;
+    c->frame_uniforms = c->params_uniforms = 0;
 }
 
 bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, error *e)
@@ -136,11 +136,19 @@ void pass_clock_stop(pass_context *c, pass_timing since)
                                                   now(CLOCK_PROCESS_CPUTIME_ID) - since.cpu_ms, c->tiles.occupied_count};
 }
 
+GLuint pass_program(pass_context *c, const char *file, const char *defines, error *e)
+{
+    char all[256];
+    snprintf(all, sizeof all, "%s%s", c->gb->camera.kind == CAMERA_ORTHOGRAPHIC ? "ORTHOGRAPHIC 1\n" : "",
+             defines ? defines : "");
+    return gpu_program(c->g, file, all, e);
+}
+
 // What dispatched and drawn passes have in common: program, blocks and images in place.
 static bool set_up(pass_context *c, const char *file, const char *defines, const void *params, size_t params_size,
                    const pass_binding *bindings, int binding_count, error *e)
 {
-    GLuint program = gpu_program(c->g, file, defines, e);
+    GLuint program = pass_program(c, file, defines, e);
     if (!program) return false;
     glUseProgram(program);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, c->frame_uniforms);

@@ -85,6 +85,8 @@ typedef struct pass_context {
     gpu_image bent;          // mean open direction of the cosine-weighted hemisphere, camera space: 2/3 long where all is open
     gpu_image sh[SH_IMAGES]; // SH vector of cosine-weighted visibility, coefficients 0 1 2 | 3 4 5 | 6 7 8 and, with four bands,
                              // | 9 10 11 12 | 13 14 15
+    gpu_image plane_image;   // the planes, for the shader
+    gpu_image surface;       // depth and normal in one texel, for the slice marches
 
     const float *stored_sh[SH_IMAGES]; // --from-sh: 4 a pixel as in sh, borrowed; NULL: s3ho measures
     const environment *env;            // borrowed; NULL without light
@@ -95,7 +97,7 @@ typedef struct pass_context {
     int threads;
     plane_set planes; // found by the pass that uses them
 
-    GLuint frame_uniforms, params_uniforms, plane_uniforms;
+    GLuint frame_uniforms, params_uniforms;
     gpu_tiles tiles;
     pass_timing timings[PASS_MAX_TIMINGS];
     int timing_count;
@@ -116,6 +118,9 @@ typedef struct pass_binding {
     const gpu_image *image;
     GLenum access;
 } pass_binding;
+
+// The program of a shader file for the frame's camera, with further defines (may be NULL).
+GLuint pass_program(pass_context *c, const char *file, const char *defines, error *e);
 
 // Runs shader `name` over the tiles with the given parameter block (may be NULL) and images.
 bool pass_run(pass_context *c, const char *name, const char *defines, const void *params, size_t params_size,
