@@ -94,7 +94,7 @@ void main() {
             }
         }
 #ifdef PLANES
-        block_by_planes(slots, side, V, across, n, lines, P, noise.y);
+        block_by_planes(slots, side, V, across, n, lines, P, noise.x, noise.y);
 #endif
         open += weight * (1.0 - sector_share(slots.blocked));
         all += weight;

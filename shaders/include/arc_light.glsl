@@ -41,7 +41,7 @@ void add_suns(inout Light light, vec3 P, vec3 N, vec3 V, float eye_distance, vec
         Sectors slots = all_open();
         march(slots, s, lines.right, P, N, V, step_jitter, jitter);
 #ifdef PLANES
-        block_by_planes(slots, s, V, across, n, lines, P, jitter);
+        block_by_planes(slots, s, V, across, n, lines, P, step_jitter, jitter);
 #endif
         int k = int(place);
         uint word = k < 32 ? slots.blocked.x : slots.blocked.y;

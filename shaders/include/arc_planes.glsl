@@ -6,7 +6,7 @@
 #include "include/arc_plane.glsl"
 layout(rgba32f, binding = 7) readonly uniform image2D planes_image;
 
-const int CHORDS = 3; // directions tested of the arc that a plane could block
+const int CHORDS = 6; // directions tested of the arc that a plane could block
 const float ROOM = 0.004; // of the depth: as far as a plane may lie off its own surface, and a little more
 
 // True if the recorded surface at a pixel lies in front of depth z, or (with a negative sign of ROOM) at it.
@@ -46,7 +46,7 @@ bool stands(int plane, vec3 X, vec2 here, bool beyond_frame) {
 
 vec2 turned(vec2 d, vec2 by) { return vec2(d.x * by.x - d.y * by.y, d.x * by.y + d.y * by.x); }
 
-void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, Lines lines, vec3 P, float jitter) {
+void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, Lines lines, vec3 P, float place, float jitter) {
     Border right = border_of(lines.right), left = border_of(lines.left);
     for (int i = 0; i < params.planes; i++) {
         vec4 equation = imageLoad(planes_image, ivec2(PLANE_EQUATION, i));
@@ -71,16 +71,12 @@ void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, 
 #else
         vec3 sent = vec3(0.0);
 #endif
-        vec2 edge = vec2(cos(from), sin(from)), half_turn = vec2(cos(0.5 * width), sin(0.5 * width));
+        vec2 edge = vec2(cos(from), sin(from)), turn = vec2(cos(width), sin(width)), part = vec2(cos(place * width), sin(place * width));
         float c = share_at(s, from, edge);
         for (int j = 0; j < CHORDS; j++) {
-            // The direction tested is evenly distributed over the chord's shares, not its angles: straight on either side of the middle.
-            vec2 middle = turned(edge, half_turn);
-            edge = turned(middle, half_turn);
-            float t = from + (float(j) + 0.5) * width, half_way = share_at(s, t, middle), next = share_at(s, t + 0.5 * width, edge);
-            float tested = mix(c, next, jitter), below = tested - half_way;
-            float aside = 0.5 * width * below / max(below < 0.0 ? half_way - c : next - half_way, 1e-6), square = aside * aside;
-            vec2 d = turned(middle, vec2(1.0 - square * (0.5 - square / 24.0), aside * (1.0 - square * (1.0 / 6.0 - square / 120.0))));
+            vec2 d = turned(edge, part);
+            edge = turned(edge, turn);
+            float next = share_at(s, from + float(j + 1) * width, edge);
             vec3 X = P + height / dot(normal, d) * (d.x * V + d.y * across);
             vec2 here = vec2(dot(u.xyz, X) - u.w, dot(v.xyz, X) - v.w);
             bool blocks = relevant && stands(i, X, here, d.y > 0.0 ? goes_right : goes_left);

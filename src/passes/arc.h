@@ -14,7 +14,7 @@ typedef struct arc_params {
     float sun_direction[4][4], sun_light[4][4];
 } arc_params;
 
-// Slices and steps a side for a number of samples = slices x 2 x steps, with about twice as many steps as slices.
+// Slices and steps a side for a number of samples = slices x 2 x steps.
 void arc_grid(int samples, int *slices, int *steps);
 arc_params arc_params_of(const pass_context *c);
 
