@@ -86,7 +86,7 @@ void main() {
         Sectors slots = all_open();
         // Both sides of the slice, the near one last; sectors are counted from the other end on the far side.
         for (int k = 0; k < 2; k++) {
-            march(slots, side, line, P, N, V, k == 0 ? 1.0 - noise.x : noise.x, k == 0 ? 1.0 - noise.y : noise.y);
+            march(slots, side, line, P, N, k == 0 ? 1.0 - noise.x : noise.x, k == 0 ? 1.0 - noise.y : noise.y);
             if (k == 0) {
                 slots.blocked = bitfieldReverse(slots.blocked.yx);
                 side = opposite(side, -n);

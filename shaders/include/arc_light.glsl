@@ -39,7 +39,7 @@ void add_suns(inout Light light, vec3 P, vec3 N, vec3 V, float eye_distance, vec
         float place = min(share_at(s, atan(sine, along)), 0.9999) * 64.0, jitter = fract(place);
         Lines lines = lines_of(V, across, origin, -1.0);
         Sectors slots = all_open();
-        march(slots, s, lines.right, P, N, V, step_jitter, jitter);
+        march(slots, s, lines.right, P, N, step_jitter, jitter);
 #ifdef PLANES
         block_by_planes(slots, s, V, across, n, lines, P, step_jitter, jitter);
 #endif

@@ -15,7 +15,7 @@ struct Run {
     float width;        // of what is seen, times kappa
     vec2 first, last;   // ends, in the slice
     vec2 rim;           // the point of the highest share
-    float rim_inverse;  // 1 / depth there
+    float rim_inverse;  // 1 / its distance from the eye
     float last_share, last_squared; // of the last sample: share, squared distance
     vec3 point, normal, light; // of the last sample
 };
@@ -25,12 +25,11 @@ struct Walk {
     Line line;
     float limit, jitter, step_jitter;
     float squared_radius, pixel;
-    float foreshortening; // depth over distance along the receiver's view ray: thickness is a length along it
 };
 
 // Ends a run: all it blocks, as far as its samples have not done so already.
 void finish(inout Sectors slots, Side s, Walk k, Run r, bool ends, bool now) {
-    float thickness = max(r.width, r.starts && ends ? params.thin : params.thickness) * k.foreshortening;
+    float thickness = max(r.width, r.starts && ends ? params.thin : params.thickness);
     float back = share(s, r.rim + thickness * away(s, r.rim, r.rim_inverse));
     uvec2 mask = sectors(r.low, max(r.high, back), k.jitter);
     block(slots, now && r.alive && r.low <= r.high ? mask : uvec2(0u), r.light);
@@ -71,7 +70,7 @@ void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at,
     run.starts = joined ? run.starts : !run.alive || nearer;
     run.first = joined ? run.first : w;
     run.rim = rises ? w_in : run.rim;
-    run.rim_inverse = rises ? 1.0 / depth : run.rim_inverse;
+    run.rim_inverse = rises ? inversesqrt(dot(Q, Q)) : run.rim_inverse;
     run.low = counts ? min(low, c) : low;
     run.high = counts ? max(high, c) : high;
     run.width = params.kappa * (length(w - run.first) + step_size);
@@ -101,9 +100,9 @@ void go_on(inout Run run, Side s, Walk k, float at) {
     run.high = counts ? max(run.high, c) : run.high;
 }
 
-void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, vec3 V, float step_jitter, float jitter) {
+void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
     Run run = Run(true, false, 2.0, 1.0, 0.0, vec2(0.0), vec2(0.0), vec2(0.0), 0.0, 1.0, 0.0, P, N, vec3(0.0));
-    Walk k = Walk(line, min(line.reach, line.border), jitter, step_jitter, params.radius * params.radius, footprint(1.0), -V.z);
+    Walk k = Walk(line, min(line.reach, line.border), jitter, step_jitter, params.radius * params.radius, footprint(1.0));
     float before = 0.0;
     for (int i = 0; i < params.steps; i++) {
         float at = step_distance(i, step_jitter, k.limit);

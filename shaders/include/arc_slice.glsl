@@ -56,17 +56,17 @@ Side opposite(Side s, float n) {
     return s;
 }
 
-// c of the direction to a point on this side; 1 at and below the tangent plane.
+// c of the direction to a point; 1 at and below the tangent plane.
 float share(Side s, vec2 w) {
-    float x = w.y * s.cos_n - w.x * s.sin_n, y = max(w.y * s.sin_n + w.x * s.cos_n, 0.0), squared = dot(w, w);
-    float t = fast_atan(y, x), c = (0.5 * y * (s.cos_n * y - s.sin_n * x) / max(squared, 1e-30) + 0.5 * s.sin_n * t + s.below) * s.scale;
+    float x = w.y * s.cos_n - w.x * s.sin_n, y = w.y * s.sin_n + w.x * s.cos_n, squared = dot(w, w);
+    float t = fast_atan(abs(y), x), c = (0.5 * abs(y) * (s.cos_n * y - s.sin_n * x) / max(squared, 1e-30) + 0.5 * s.sin_n * t + s.below) * s.scale;
     return w.y <= s.least || w.y * w.y <= GRAZING * GRAZING * squared ? 1.0 : clamp(c, 0.0, 1.0);
 }
 
 vec2 in_slice(Side s, vec3 w) { return vec2(dot(w, s.tangent), dot(w, s.lift)); }
 
-// Along the view ray through a point, on which the surface hides what is behind it: as far as depth grows by 1.
-vec2 away(Side s, vec2 w, float inverse_depth) { return is_orthographic() ? -s.eye : (w - s.eye) * inverse_depth; }
+// Unit vector along the view ray through a point, on which the surface hides what is behind it; given 1 over the length of that ray.
+vec2 away(Side s, vec2 w, float inverse_distance) { return is_orthographic() ? -s.eye : (w - s.eye) * inverse_distance; }
 
 // c of a signed angle, given with its cosine and sine.
 float share_at(Side s, float t, vec2 d) {

@@ -7,9 +7,9 @@ static const float HUGE_LENGTH = 1e15f; // its square is still a float
 static const float KAPPA = 1.0f;        // a run is as thick as it is wide
 static const float TOLERANCE = 1.3f;    // a run may turn by 52 degrees between two steps
 
-// A filter over the neighbours averages slices but cannot find what steps have missed, so small budgets go into steps: 1 x 8, 1 x 16,
-// 2 x 16 (lower errors at the same time than 2 x 4, 2 x 8, 4 x 8); large ones, which no filter follows, stay near twice as many
-// steps as slices.
+// A filter over the neighbours averages slices but cannot find what steps have missed, so small budgets go into steps: 1 x 8, 1 x
+// 16 and 2 x 16 have lower errors at the same time than 2 x 4, 2 x 8 and 4 x 8. Large ones, which no filter follows, stay near
+// twice as many steps as slices.
 void arc_grid(int samples, int *slices, int *steps)
 {
     int s = (int)lround(fmin(samples / 32.0, sqrt(samples / 4.0)));
