@@ -2,7 +2,7 @@
 
 // The slice in CELLS pieces of equal angle; each looks the environment up once, at a level of its own solid angle, and weighs it by
 // its share of open sectors. `all` is what arrives with nothing in the way.
-const int CELLS = 12;
+const int CELLS = 24;
 const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 
 struct Light {
@@ -11,13 +11,18 @@ struct Light {
 };
 
 void add_sky(inout Light light, Side s, vec3 V, vec3 across, float n, float weight, uvec2 blocked, float jitter) {
-    float from = n - 0.5 * PI, width = PI / float(CELLS), c = 0.0, wedge = PI / float(params.slices);
+    const float width = PI / float(CELLS);
+    const vec2 half_turn = vec2(cos(0.5 * width), sin(0.5 * width));
+    float from = n - 0.5 * PI, c = 0.0, wedge = PI / float(params.slices);
+    vec2 edge = vec2(s.sin_n, -s.cos_n); // cosine and sine of `from`
     for (int i = 0; i < CELLS; i++) {
-        float t0 = from + float(i) * width, t = t0 + 0.5 * width, next = i + 1 == CELLS ? 1.0 : share_at(s, t0 + width);
+        vec2 middle = turned(edge, half_turn);
+        edge = turned(middle, half_turn);
+        float next = i + 1 == CELLS ? 1.0 : share_at(s, from + float(i + 1) * width, edge);
         uvec2 cell = sectors(c, next, jitter);
         float share = sector_share(cell), open = sector_share(cell & ~blocked);
-        vec3 direction = to_map(cos(t) * V + sin(t) * across);
-        float solid_angle = wedge * max(abs(sin(t)) * width, 0.25 * width * width);
+        vec3 direction = to_map(middle.x * V + middle.y * across);
+        float solid_angle = wedge * max(abs(middle.y) * width, 0.25 * width * width);
         vec3 L = radiance_from(direction, params.level < 0.0 ? map_level(direction, solid_angle) : params.level);
         light.open += weight * open * L;
         light.open_luminance += weight * open * dot(L, LUMINANCE);

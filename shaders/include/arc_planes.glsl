@@ -44,8 +44,6 @@ bool stands(int plane, vec3 X, vec2 here, bool beyond_frame) {
 #endif
 }
 
-vec2 turned(vec2 d, vec2 by) { return vec2(d.x * by.x - d.y * by.y, d.x * by.y + d.y * by.x); }
-
 void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, Lines lines, vec3 P, float place, float jitter) {
     Border right = border_of(lines.right), left = border_of(lines.left);
     for (int i = 0; i < params.planes; i++) {

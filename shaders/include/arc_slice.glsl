@@ -17,14 +17,6 @@ struct Side {
     vec2 eye;     // where the eye is, or for an orthographic camera its direction
 };
 
-// atan(y / x) of y >= 0, any x, to 1e-5 (Abramowitz and Stegun 4.4.49, and its reflections): 0 .. PI.
-float fast_atan(float y, float x) {
-    float size = abs(x), a = min(y, size) / max(max(y, size), 1e-30), b = a * a;
-    float t = a * (0.9998660 + b * (-0.3302995 + b * (0.1801410 + b * (-0.0851330 + b * 0.0208351))));
-    t = y > size ? 0.5 * PI - t : t;
-    return x < 0.0 ? PI - t : t;
-}
-
 // Below this sine over the tangent plane nothing counts: rounding and half-float normals live there, and 1e-5 of the weight.
 const float GRAZING = 0.004;
 
@@ -74,3 +66,6 @@ float share_at(Side s, float t, vec2 d) {
     return clamp(((t < 0.0 ? -f : f) + s.below) * s.scale, 0.0, 1.0);
 }
 float share_at(Side s, float t) { return share_at(s, t, vec2(cos(t), sin(t))); }
+
+// A direction (cos, sin) turned by another.
+vec2 turned(vec2 d, vec2 by) { return vec2(d.x * by.x - d.y * by.y, d.x * by.y + d.y * by.x); }

@@ -3,21 +3,23 @@
 layout(binding = 0) uniform sampler2D environment_map;
 
 vec2 map_uv(vec3 direction) {
-    float u = 0.5 - atan(direction.y, direction.x) * (0.5 / PI);
-    return vec2(u, acos(clamp(direction.z, -1.0, 1.0)) / PI);
+    float around = fast_atan(abs(direction.y), direction.x) * (direction.y < 0.0 ? -1.0 : 1.0);
+    float sine = sqrt(max(0.0, 1.0 - direction.z * direction.z));
+    return vec2(0.5 - around * (0.5 / PI), fast_atan(sine, direction.z) * (1.0 / PI));
 }
 
 // Level whose texels, at this direction, cover the given solid angle. A texel covers 2 pi^2 sin(theta) / (w h) (THEORY.md 2); near
 // the poles sin(theta) is bounded by the half texel row that is really there.
 float map_level(vec3 direction, float solid_angle) {
-    float sin_theta = max(sqrt(max(0.0, 1.0 - direction.z * direction.z)), 0.5 * PI / frame.env.z);
-    float texel = 2.0 * PI * PI * sin_theta / (frame.env.y * frame.env.z);
-    return clamp(0.5 * log2(solid_angle / texel), 0.0, frame.env.x);
+    float sin_theta = max(sqrt(max(0.0, 1.0 - direction.z * direction.z)), 0.5 * PI / frame_env.z);
+    float texel = 2.0 * PI * PI * sin_theta / (frame_env.y * frame_env.z);
+    return clamp(0.5 * log2(solid_angle / texel), 0.0, frame_env.x);
 }
 
 // Radiance from a map-space direction.
+vec3 white = vec3(frame.sh[0].x, frame.sh[0].y, frame.sh[0].z); // copied like frame.glsl's
 vec3 radiance_from(vec3 direction, float level) {
-    return frame.env.w == 1.0 ? frame.sh[0].rgb * 0.282094792 : textureLod(environment_map, map_uv(direction), level).rgb;
+    return frame_env.w == 1.0 ? white * 0.282094792 : textureLod(environment_map, map_uv(direction), level).rgb;
 }
 
 // Irradiance / pi at a map-space normal from the nine radiance coefficients: c1..c5 of Ramamoorthi and Hanrahan (2001).

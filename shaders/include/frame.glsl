@@ -17,6 +17,10 @@ layout(std140, binding = 0) uniform Frame {
 vec4 frame_lens = vec4(frame.lens.x, frame.lens.y, frame.lens.z, frame.lens.w);
 vec2 pixel_slope = 1.0 / frame_lens.xy; // of a ray's xy, per pixel
 ivec2 frame_size = ivec2(frame.size.x, frame.size.y);
+vec4 frame_env = vec4(frame.env.x, frame.env.y, frame.env.z, frame.env.w);
+mat3 camera_from_map = mat3(vec3(frame.map_from_camera[0].x, frame.map_from_camera[0].y, frame.map_from_camera[0].z),
+                            vec3(frame.map_from_camera[1].x, frame.map_from_camera[1].y, frame.map_from_camera[1].z),
+                            vec3(frame.map_from_camera[2].x, frame.map_from_camera[2].y, frame.map_from_camera[2].z));
 
 layout(r32f, binding = 0) readonly uniform image2D depth_image;
 layout(rgba32f, binding = 1) readonly uniform image2D normal_image;
@@ -69,7 +73,12 @@ float footprint(float depth) {
 // The largest error float rounding can put on the coordinates of a point.
 float rounding(vec3 point) { return 4.0 * ULP * max(max(abs(point.x), abs(point.y)), abs(point.z)); }
 
-vec3 to_map(vec3 direction) {
-    return vec3(dot(frame.map_from_camera[0].xyz, direction), dot(frame.map_from_camera[1].xyz, direction),
-                dot(frame.map_from_camera[2].xyz, direction));
+vec3 to_map(vec3 direction) { return direction * camera_from_map; }
+
+// atan(y / x) of y >= 0, any x, to 1e-5 (Abramowitz and Stegun 4.4.49, and its reflections): 0 .. PI.
+float fast_atan(float y, float x) {
+    float size = abs(x), a = min(y, size) / max(max(y, size), 1e-30), b = a * a;
+    float t = a * (0.9998660 + b * (-0.3302995 + b * (0.1801410 + b * (-0.0851330 + b * 0.0208351))));
+    t = y > size ? 0.5 * PI - t : t;
+    return x < 0.0 ? PI - t : t;
 }
