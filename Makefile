@@ -202,7 +202,7 @@ bench-readme: ; @sh tests/bench/readme.sh $(BUILD)
 
 # Renders the truth of SCENE again with the committed script and compares: TRUTH_SPP=384 gives the committed pixels, fewer are faster.
 SCENE     ?= ortho
-TRUTH_SPP ?= 64
+TRUTH_SPP ?= 384
 truth: deps-check
 	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/tests/bench/truth_check
 	@rm -rf $(BUILD)/truth && mkdir -p $(BUILD)/truth && cp samples/sky_*.exr $(BUILD)/truth

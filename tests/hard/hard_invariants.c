@@ -143,7 +143,7 @@ static void placed(const subject *s, double scale, mat3 turn, gbuffer *out)
 }
 
 // Powers of two change no bit; other factors change the rounding of every number, and so now and then which side of a threshold
-// a sample falls on.
+// a sample falls on: allowed is one of a slice's 64 directions at one pixel in ten thousand.
 static void scale(void **state)
 {
     static const double factors[] = {0x1p-20, 0x1p-10, 0x1p10, 0x1p20, 1e-6, 1e-3, 1e3, 1e6};
@@ -179,7 +179,7 @@ static void scale(void **state)
     hard_table_end(t);
     gbuffer_free(&s.gb);
     printf("figure: scale 2^-20 .. 2^20: rms change %.1e; 1e-6 .. 1e6: %.1e (worst of all methods)\n", worst[0], worst[1]);
-    assert_true(worst[0] == 0.0 && worst[1] < 1e-5);
+    assert_true(worst[0] == 0.0 && worst[1] < 1e-4);
 }
 
 static void flip(const gbuffer *from, bool x_flip, bool y_flip, bool transpose, gbuffer *to)
