@@ -27,17 +27,17 @@ hemisphere: points 5 % farther|hemisphere.comp|s/mix(0\.1, 1\.0/mix(0.105, 1.05/
 hemisphere: weight of a point times 1.05|hemisphere.comp|s/1\.0 - float(count)/1.0 - 1.05 * float(count)/|bias:hemisphere
 hbao: weight, 1 - 1.05 r^2|hbao.comp|s#1\.0 - ww / rr#1.0 - 1.05 * ww / rr#|bias:hbao
 hbao: rise of the horizon times 1.05|hbao.comp|s/(elevation - horizon)/1.05 * (elevation - horizon)/|bias:hbao
-slices: cosine, sin^2 term times 1.05|include/arc_slice.glsl|s/0\.5 \* (s\.cos_n \* st/0.5 * (1.05 * s.cos_n * st/|bias:gtao
-slices: measure, second term times 1.05|include/arc_slice.glsl|s/s\.sin_n \* (t - st/1.05 * s.sin_n * (t - st/|bias:gtao
+slices: cosine, sin^2 term times 1.05|include/arc_slice.glsl|s/(s\.cos_n \* y - s\.sin_n/(1.05 * s.cos_n * y - s.sin_n/|bias:gtao
+slices: measure, second term times 1.05|include/arc_slice.glsl|s/0\.5 \* s\.sin_n \* t + s\.below/0.525 * s.sin_n * t + s.below/|bias:gtao
 slices: measure of the far half times 1.05|include/arc_slice.glsl|s/s\.below = 0\.5/s.below = 0.525/|bias:gtao
 slices: scale of the measure times 1.05|include/arc_slice.glsl|s#s\.scale = 1\.0 /#s.scale = 1.05 /#|bias:gtao
-slices: angle of the normal times 1.05|include/arc_slice.glsl|s/n = atan(sideways, up)/n = 1.05 * atan(sideways, up)/|bias:gtao
+slices: angle of the normal times 1.05|include/arc_slice.glsl|s/n = fast_atan(abs(sideways)/n = 1.05 * fast_atan(abs(sideways)/|bias:gtao
 slices: weight, length of the projected normal left out|include/arc_slice.glsl|s/weight = squared \* inverse_length \*/weight =/|bias:gtao
 slices: weight, that length to the power 1.05|include/arc_slice.glsl|s/weight = squared \* inverse_length \*/weight = pow(squared * inverse_length, 1.05) */|bias:gtao
 slices: weight, n sin n times 1.05|include/arc_slice.glsl|s/\(weight = .*\)n \* s\.sin_n/\11.05 * n * s.sin_n/|bias:gtao
 bitmask: thickness times 1.05|include/arc_taps.glsl|s/w + params\.thickness/w + 1.05 * params.thickness/|bias:bitmask
 gtao, bitmask: radius squared times 1.05|include/arc_taps.glsl|s/< params\.radius \* params\.radius/< 1.05 * params.radius * params.radius/|bias:gtao
-arc: cosine, sin^2 term times 1.05|include/arc_slice.glsl|s/0\.5 \* (s\.cos_n \* st/0.5 * (1.05 * s.cos_n * st/|arc:arc_agrees*
+arc: cosine, sin^2 term times 1.05|include/arc_slice.glsl|s/(s\.cos_n \* y - s\.sin_n/(1.05 * s.cos_n * y - s.sin_n/|arc:arc_agrees*
 arc: measure of the far half times 1.05|include/arc_slice.glsl|s/s\.below = 0\.5/s.below = 0.525/|arc:arc_agrees*
 arc: scale of the measure times 1.05|include/arc_slice.glsl|s#s\.scale = 1\.0 /#s.scale = 1.05 /#|arc:arc_agrees*
 LIST
