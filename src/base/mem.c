@@ -1,6 +1,8 @@
 #include "base/mem.h"
 
 #include <stdatomic.h>
+#include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,4 +51,17 @@ char *mem_string(const char *s, error *e)
     char *copy = mem_zero(n, 1, e);
     if (copy) memcpy(copy, s, n);
     return copy;
+}
+
+size_t mem_available(void)
+{
+    const char *said = getenv("SSDO_MEMORY");
+    if (said && *said) return (size_t)strtoull(said, NULL, 10);
+    FILE *f = fopen("/proc/meminfo", "r");
+    unsigned long long kib = 0;
+    char line[160];
+    while (f && fgets(line, sizeof line, f))
+        if (sscanf(line, "MemAvailable: %llu kB", &kib) == 1) break;
+    if (f) fclose(f);
+    return kib ? (size_t)kib * 1024 : SIZE_MAX;
 }

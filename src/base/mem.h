@@ -16,4 +16,8 @@ void *mem_grow(void *old, size_t count, size_t size, error *e);
 // A copy of a string (NULL gives NULL without an error).
 char *mem_string(const char *s, error *e);
 
+// Bytes that can be allocated without swapping: MemAvailable of /proc/meminfo, or what the environment variable SSDO_MEMORY says
+// (for tests). SIZE_MAX where nobody knows.
+size_t mem_available(void);
+
 #endif

@@ -130,13 +130,34 @@ static bool list_views(const job *j, frame_result *r, error *e)
     return true;
 }
 
+// Refuses, before any pixel is read, a frame that the device or the memory cannot hold. The bytes a pixel are the peak measured
+// with 13 channels and four layers, images of a software renderer included.
+static bool fits(const job *j, const frame_result *r, error *e)
+{
+    const double bytes = j->g.software ? 300.0 : 200.0, gib = 1024.0 * 1024.0 * 1024.0;
+    const box2 w = r->file->parts[r->resolution.main_part].data_window;
+    int width = w.x1 - w.x0 + 1, height = w.y1 - w.y0 + 1;
+    double needed = bytes * width * height, available = (double)mem_available();
+    if (j->g.max_size > 0 && (width > j->g.max_size || height > j->g.max_size))
+        return err_set(
+            e, ERR_GL, r->file->path, NULL,
+            "%d x %d pixels are more than this GL device's %d a side; cut the frame into parts (oiiotool --cut) and filter those",
+            width, height, j->g.max_size);
+    if (needed <= available) return true;
+    return err_set(
+        e, ERR_MEMORY, r->file->path, NULL,
+        "%d x %d pixels need about %.1f GiB and this machine has %.1f GiB free; cut the frame into parts (oiiotool --cut) "
+        "and filter those",
+        width, height, needed / gib, available / gib);
+}
+
 bool frame_read_files(const job *j, const char *const *inputs, int count, frame_result *r, error *e)
 {
     *r = (frame_result){0};
     stopwatch t = read_clocks();
     bool ok = exr_file_open_all(inputs, count, &r->file, e) && list_views(j, r, e);
     for (frame_result *v = r; ok && v; v = v->next_view) ok = resolve_view(j, v, e);
-    if (!ok || !exr_file_load(r->file, j->threads, e)) return false;
+    if (!ok || !fits(j, r, e) || !exr_file_load(r->file, j->threads, e)) return false;
     lap(r, STAGE_READ, &t);
     for (frame_result *v = r; ok && v; v = v->next_view) ok = build_view(j, v, e);
     lap(r, STAGE_RESOLVE, &t);

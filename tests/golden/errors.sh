@@ -37,6 +37,10 @@ expect 3 "--fov" "$dir/depthonly.exr" -o "$dir/out.exr"
 expect 3 "truncated.exr" "$dir/truncated.exr" -o "$dir/out.exr"
 expect 3 "not an OpenEXR file" "$dir/text.exr" -o "$dir/out.exr"
 expect 3 "missing.exr" "$dir/missing.exr" -o "$dir/out.exr"
+SSDO_MEMORY=1000000
+export SSDO_MEMORY
+expect 6 "GiB free" "$sample" -o "$dir/out.exr"
+unset SSDO_MEMORY
 expect 3 "albedo" "$dir/noalbedo.exr" -o "$dir/out.exr" --layers indirect
 expect 3 "'roughness'" "$sample" -o "$dir/out.exr" --layers specular --env samples/sky_soft.exr
 expect 4 "no/such/folder" "$sample" -o "$dir/no/such/folder/out.exr"
