@@ -40,7 +40,7 @@ typedef struct options {
     bool from_sh;
     int blur; // radius in pixels; 0 none; -1 the method's default
     double scale, contrast;
-    bool half; // --resolution: estimated at half the size
+    int half; // --resolution: 1 estimated at half the size, 0 at the whole, -1 as --quality has it
 
     const char *mesh; // of --method raytrace
     int trace;        // passes/trace.h's backend: 0 auto, 1 embree, 2 gpu

@@ -247,7 +247,7 @@ static mat3 world_from_camera(const job *j, const frame_result *r)
 // composite.comp: 1 the beauty, 2 the environment, 0 nothing.
 static int background_of(bool beauty, bool sky) { return beauty ? 1 : sky ? 2 : 0; }
 
-// A quarter of the method's own samples for a draft, four times as many for high quality.
+// A quarter of the method's own samples for a draft (and of the pixels, settings_of), four times as many for high quality.
 static int samples_at(const method *m, int quality)
 {
     return quality < 0 ? m->samples / 4 : quality > 0 ? m->samples * 4 : m->samples;
@@ -264,7 +264,7 @@ static pass_settings settings_of(const job *j, const frame_result *r, double rad
         .thickness = share * radius,
         .thickness_fixed = o->thickness >= 0.0,
         .planes = !o->no_planes,
-        .half = o->half && !r->plan.from_sh, // stored layers are whole already
+        .half = (o->half < 0 ? o->quality < 0 : o->half) && !r->plan.from_sh, // stored layers are whole already
         .samples = o->samples > 0 ? o->samples : samples_at(m, o->quality),
         .angle_bias = o->angle_bias,
         .sh_bands = o->sh_bands,

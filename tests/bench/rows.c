@@ -84,8 +84,9 @@ static int method_rows(const method *m, bench_row *rows)
     if (is_slices(m)) rows[n++] = row_of(m, "", CONVERGED, 0);
     rows[n++] = row_of(m, "", m->samples, m->blur);
     rows[n - 1].standard = true;
-    for (int i = 0; m->blur > 0 && i < 2; i++)
-        rows[n++] = row_of(m, "", i ? m->samples * 4 : m->samples / 4, m->blur); // --quality
+    rows[n++] = row_of(m, "", 4 * m->samples, m->blur);                // --quality high
+    rows[n] = row_of(m, ", half resolution", m->samples / 4, m->blur); // --quality draft
+    rows[n++].half = true;
     rows[n] = row_of(m, ", half resolution", m->samples, m->blur);
     rows[n].half = rows[n].standard = true;
     n++;
