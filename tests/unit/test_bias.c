@@ -35,17 +35,24 @@ static void build_grazing(scene *s)
     s->target = v3(0, 0, 0.1);
 }
 
+// A ground seen as flat along the foot of a wall: the slices that hold the view's tilt weigh least by their cosine and most by
+// their angle, and only those across them meet the wall.
+static void build_along_wall(scene *s)
+{
+    scene_wall(s, 70.0, 0.4);
+    s->eye = v3(-6, -0.9, 0.6);
+    s->target = v3(0, -0.6, 0);
+}
+
 static void build_wide_clutter(scene *s)
 {
     scene_clutter(s);
     s->radius = 2.5; // so that Alchemy's c, a tenth of it, is several pixels
 }
 
-static const listed_scene views[] = {{"clutter", scene_clutter, false},
-                                     {"clutter-ortho", scene_clutter, true},
-                                     {"clutter, wide", build_wide_clutter, false},
-                                     {"grazing", build_grazing, false},
-                                     {NULL, NULL, false}};
+static const listed_scene views[] = {
+    {"clutter", scene_clutter, false}, {"clutter-ortho", scene_clutter, true},    {"clutter, wide", build_wide_clutter, false},
+    {"grazing", build_grazing, false}, {"along a wall", build_along_wall, false}, {NULL, NULL, false}};
 
 static bool unbiased(rig *r, fixture *f, const trial *t, const char *where)
 {
