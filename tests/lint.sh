@@ -21,7 +21,7 @@ splice() {
         BEGIN { cat(ARGV[1]); exit }' "$1"
 }
 
-# A shader with compile-time variants lists the sets to check in a comment: // lint: A B=2 | C
+# A shader with compile-time variants lists the sets to check in a comment: // lint: A B=2 | C. Each is checked for both cameras.
 count=0
 for f in shaders/*.comp shaders/*.frag; do
     case $f in *.frag) kind=-DFRAGMENT=1 ;; *) kind= ;; esac
@@ -31,8 +31,11 @@ for f in shaders/*.comp shaders/*.frag; do
     while read -r set; do
         defines=
         for d in $set; do case $d in *=*) defines="$defines -D$d" ;; *) defines="$defines -D$d=1" ;; esac; done
-        glslangValidator -l $kind $defines "$out/$(basename "$f")" >"$out/log" || { echo "lint: $f with $set:" >&2; cat "$out/log" >&2; exit 1; }
-        count=$((count + 1))
+        for camera in "" -DORTHOGRAPHIC=1; do
+            glslangValidator -l $kind $defines $camera "$out/$(basename "$f")" >"$out/log" ||
+                { echo "lint: $f with $set $camera:" >&2; cat "$out/log" >&2; exit 1; }
+            count=$((count + 1))
+        done
     done <"$out/sets"
 done
 echo "lint: formatting clean, $count shader variants valid"

@@ -23,7 +23,8 @@ struct Run {
 // What a march needs of its line and of the frame.
 struct Walk {
     Line line;
-    float limit, jitter, step_jitter;
+    float limit;  // where it ends, in pixels
+    float jitter; // of the sectors
     float squared_radius, pixel;
 };
 
@@ -94,15 +95,18 @@ void go_on(inout Run run, Side s, Walk k, float at) {
     vec2 end = run.last + e * (BELIEVED * length(run.last - run.first));
     bool counts = run.alive;
 #endif
-    float c = counts ? share(s, end) : run.low;
-    run.rim = counts && c >= run.high ? end : run.rim;
-    run.low = min(run.low, c);
+    float c = share(s, end);
+    bool rises = counts && c >= run.high;
+    vec2 from_eye = end - s.eye;
+    run.rim = rises ? end : run.rim;
+    run.rim_inverse = rises ? inversesqrt(dot(from_eye, from_eye)) : run.rim_inverse;
+    run.low = counts ? min(run.low, c) : run.low;
     run.high = counts ? max(run.high, c) : run.high;
 }
 
 void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
     Run run = Run(true, false, 2.0, 1.0, 0.0, vec2(0.0), vec2(0.0), vec2(0.0), 0.0, 1.0, 0.0, P, N, vec3(0.0));
-    Walk k = Walk(line, min(line.reach, line.border), jitter, step_jitter, params.radius * params.radius, footprint(1.0));
+    Walk k = Walk(line, min(line.reach, line.border), jitter, params.radius * params.radius, footprint(1.0));
     float before = 0.0;
     for (int i = 0; i < params.steps; i++) {
         float at = step_distance(i, step_jitter, k.limit);

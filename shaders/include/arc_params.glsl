@@ -17,7 +17,7 @@ layout(std140, binding = 1) uniform ParamsBlock {
     vec4 sun_light[4];     // rgb: irradiance over pi of a surface that faces the sun
 } stored;
 
-// A copy made before main, as in frame.glsl.
+// A copy made before main, as in frame.glsl; number by number, because a block copied whole is read where it is used all the same.
 struct Params {
     float radius;
     float thickness;
@@ -34,6 +34,6 @@ struct Params {
     int exitant;
     float inverse_steps;
 };
-Params params = Params(stored.radius, stored.thickness, stored.kappa, stored.thin, stored.slices, stored.steps, stored.seed, stored.planes, stored.tolerance, stored.level, stored.strength, stored.suns, stored.exitant, stored.inverse_steps);
-
-const float UNLIMITED = 1e12; // radii from here on mean: no limit
+Params params = Params(stored.radius, stored.thickness, stored.kappa, stored.thin, stored.slices, stored.steps, stored.seed,
+                       stored.planes, stored.tolerance, stored.level, stored.strength, stored.suns, stored.exitant,
+                       stored.inverse_steps);

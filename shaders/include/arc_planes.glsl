@@ -31,12 +31,13 @@ bool allows(Border b, vec4 equation) {
 // its support than the support is wide.
 bool stands(int plane, vec3 X, vec2 here, bool beyond_frame) {
     vec2 screen = screen_of(X);
-    ivec2 q = ivec2(screen), cell = ivec2(clamp(here * 8.0 + 8.0, 0.0, 15.0));
-    bool inside = X.z > 0.0 && all(greaterThanEqual(screen, vec2(0.0))) && all(lessThan(q, frame_size));
+    // Compared before they become integers, which hold no screen coordinate of a point near the eye.
+    bool inside = X.z > 0.0 && all(greaterThanEqual(screen, vec2(0.0))) && all(lessThan(screen, vec2(frame_size)));
+    ivec2 q = ivec2(inside ? screen : vec2(0.0)), cell = ivec2(clamp(here * 8.0 + 8.0, 0.0, 15.0));
     vec4 rows = imageLoad(planes_image, ivec2(PLANE_CELLS + (cell.y >> 2), plane));
     uint row = uint((cell.y & 2) == 0 ? ((cell.y & 1) == 0 ? rows.x : rows.y) : ((cell.y & 1) == 0 ? rows.z : rows.w));
     bool supported = max(abs(here.x), abs(here.y)) <= 1.0 && ((row >> cell.x) & 1u) == 1u;
-    bool behind = hidden(imageLoad(depth_image, inside ? q : ivec2(0)).r, X.z, ROOM);
+    bool behind = hidden(imageLoad(depth_image, q).r, X.z, ROOM);
 #ifdef LIMITED
     return inside ? supported && behind : beyond_frame;
 #else

@@ -16,10 +16,12 @@ float map_level(vec3 direction, float solid_angle) {
     return clamp(0.5 * log2(solid_angle / texel), 0.0, frame_env.x);
 }
 
+// Radiance of a map that is the same everywhere: its first coefficient times Y_00.
+vec3 constant_radiance = 0.282094792 * vec3(frame.sh[0].x, frame.sh[0].y, frame.sh[0].z);
+
 // Radiance from a map-space direction.
-vec3 white = vec3(frame.sh[0].x, frame.sh[0].y, frame.sh[0].z); // copied like frame.glsl's
 vec3 radiance_from(vec3 direction, float level) {
-    return frame_env.w == 1.0 ? white * 0.282094792 : textureLod(environment_map, map_uv(direction), level).rgb;
+    return frame_env.w == 1.0 ? constant_radiance : textureLod(environment_map, map_uv(direction), level).rgb;
 }
 
 // Irradiance / pi at a map-space normal from the nine radiance coefficients: c1..c5 of Ramamoorthi and Hanrahan (2001).

@@ -8,12 +8,12 @@ layout(location = 0) uniform ivec4 tile; // x0 y0 x1 y1, end exclusive
 
 layout(std140, binding = 0) uniform Frame {
     vec4 lens;          // fx fy cx cy: focal length and principal point in pixels (orthographic: pixels per scene unit)
-    ivec4 size;         // width, height, 1 if orthographic, unused
+    ivec4 size;         // width, height, unused, unused
     vec4 map_from_camera[3]; // rows of the rotation from camera space to the environment map's space
     vec4 env;           // level count - 1, width, height of the map, 1 if it is constant
     vec4 sh[9];         // rgb: plain radiance coefficients in map space
 } frame;
-// Copies made before main: llvmpipe reads a uniform inside any control flow once for every lane.
+// Copies made before main, number by number: llvmpipe reads a uniform inside any control flow once for every lane.
 vec4 frame_lens = vec4(frame.lens.x, frame.lens.y, frame.lens.z, frame.lens.w);
 vec2 pixel_slope = 1.0 / frame_lens.xy; // of a ray's xy, per pixel
 ivec2 frame_size = ivec2(frame.size.x, frame.size.y);
@@ -35,7 +35,7 @@ ivec2 this_pixel() { return tile.xy + ivec2(gl_GlobalInvocationID.xy); }
 bool in_tile(ivec2 p) { return all(lessThan(p, tile.zw)); }
 #endif
 bool in_frame(ivec2 p) { return all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, frame_size)); }
-// A permutation, because a rasteriser on the CPU pays for both branches.
+// Decided when the shader is compiled (src/passes/pass.c): a rasteriser on the CPU pays for both branches.
 #ifdef ORTHOGRAPHIC
 bool is_orthographic() { return true; }
 #else

@@ -1,11 +1,6 @@
-// Directions, tangent frames and the per-pixel numbers that turn a fixed pattern into noise a filter can remove.
+// Directions, tangent frames the per-pixel numbers that turn a fixed pattern into noise a filter can remove, and normals in few bits.
 
-// Interleaved gradient noise (Jimenez 2014): the three constants are the published ones. 0..1.
-float interleaved_gradient_noise(vec2 pixel) {
-    return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715))));
-}
-
-// A second number per pixel, unrelated to the first: the integer hash of Jarzynski and Olano 2020 ("pcg2d").
+// Two numbers per pixel: the integer hash of Jarzynski and Olano 2020 ("pcg2d").
 vec2 pixel_hash(uvec2 v) {
     v = v * 1664525u + 1013904223u;
     v.x += v.y * 1664525u;

@@ -26,7 +26,7 @@ static void fill_block(frame_block *b, const gbuffer *gb, const environment *env
     const camera *cam = &gb->camera;
     *b = (frame_block){
         .lens = {(float)cam->fx, (float)cam->fy, (float)cam->cx, (float)cam->cy},
-        .size = {gb->width, gb->height, cam->kind == CAMERA_ORTHOGRAPHIC, 0},
+        .size = {gb->width, gb->height},
     };
     if (!env) return;
     mat3 m = m3_mul(env->map_from_world, world_from_camera);

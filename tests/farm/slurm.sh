@@ -13,7 +13,7 @@ slurm_start() {
     port=$((20000 + $$ % 20000))
     cat >"$slurm/slurm.conf" <<CONF
 ClusterName=ssdo
-SlurmctldHost=$node
+SlurmctldHost=$node(127.0.0.1)
 SlurmUser=$(id -un)
 SlurmdUser=$(id -un)
 AuthType=auth/munge
