@@ -35,6 +35,15 @@ bool exr_attr_string(const exr_file *file, int part, const char *name, const cha
     return true;
 }
 
+int exr_attr_strings(const exr_file *file, int part, const char *name, const char **values, int most)
+{
+    const exr_attribute_t *a = find(file, part, name);
+    if (!a || a->type != EXR_ATTR_STRING_VECTOR) return 0;
+    int n = a->stringvector->n_strings < most ? a->stringvector->n_strings : most;
+    for (int i = 0; i < n; i++) values[i] = a->stringvector->strings[i].str ? a->stringvector->strings[i].str : "";
+    return n;
+}
+
 bool exr_attr_float(const exr_file *file, int part, const char *name, double *value)
 {
     const exr_attribute_t *a = find(file, part, name);

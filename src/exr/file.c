@@ -148,6 +148,7 @@ static bool fill_channels(exr_file *file, int index, exr_part *p, error *e)
         if ((unsigned)entry->pixel_type >= EXR_PIXEL_LAST_TYPE)
             return err_set(e, ERR_INPUT, file->path, entry->name.str, "is damaged: unknown pixel type; render it again");
         p->channels[c].type = (sample_type)entry->pixel_type;
+        p->channels[c].view = "";
         p->channels[c].name = mem_string(entry->name.str, e);
         if (!p->channels[c].name) return false;
         p->channel_count = c + 1;
@@ -182,7 +183,7 @@ static bool fill_part(exr_file *file, int index, error *e)
     p->name = mem_string(name, e);
     p->view = mem_string(view, e);
     return p->name && p->view && check_window(file, p, e) && fill_channels(file, index, p, e) &&
-           check_chunk_size(file, index, p, e);
+           check_chunk_size(file, index, p, e) && exr_fill_views(file, index, p, e);
 }
 
 bool exr_file_open(const char *path, exr_file **out, error *e)
@@ -229,6 +230,7 @@ void exr_file_close(exr_file *file)
         free(p->channels);
         free(p->name);
         free(p->view);
+        exr_free_views(p);
     }
     free(file->parts);
     free(file->path);

@@ -18,6 +18,8 @@
 
 typedef enum sample_type { SAMPLE_UINT = 0, SAMPLE_HALF = 1, SAMPLE_FLOAT = 2 } sample_type; // OpenEXR's own numbers
 
+enum { EXR_VIEWS = 16 }; // of one part, at most
+
 typedef struct box2 {
     int x0, y0, x1, y1;
 } box2; // inclusive, as in the file
@@ -29,7 +31,8 @@ static inline bool box2_equal(box2 a, box2 b) { return a.x0 == b.x0 && a.y0 == b
 
 typedef struct exr_channel {
     char *name;
-    char *stored; // its name in the file, where exr_file_open_all gave it another; else NULL
+    char *stored;     // its name in the file, where exr_file_open_all gave it another; else NULL
+    const char *view; // the stereo view that its name says, one of the part's views; "" for none
     sample_type type;
     bool wanted; // set before exr_file_load: read this channel's pixels
     void *data;  // width * height samples of `type`, native byte order; NULL until loaded
@@ -38,6 +41,10 @@ typedef struct exr_channel {
 typedef struct exr_part {
     char *name; // "" when the file gives none
     char *view; // "" when the file gives none
+    // Single-part stereo: the views that channel names tell apart (layer.right.R), by the attribute multiView, the default view
+    // first. None (0) where fewer than two of them have channels.
+    char *views[EXR_VIEWS];
+    int view_count;
     box2 data_window, display_window;
     float pixel_aspect;
     int compression; // exr_compression_t's value
@@ -69,6 +76,11 @@ bool exr_file_open_all(const char *const *paths, int count, exr_file **out, erro
 // The file that a part comes from: `file` itself unless it was put together. *part becomes its number there.
 const exr_file *exr_part_file(const exr_file *file, int *part);
 
+// The channel's name without its view: "layer.R" of "layer.right.R".
+void exr_name_without_view(const exr_channel *c, char *out, size_t size);
+// The way back, by OpenEXR's rule: the view stands before the component, but a name of one word stays so in the default view.
+void exr_name_with_view(const char *name, const char *view, bool is_default, char *out, size_t size);
+
 // Reads the pixels of every channel with `wanted` set and no data yet, on `threads` threads. A truncated or damaged chunk is
 // ERR_INPUT. A file that lost its end fails whole: no half-read data is left behind as if it were good.
 bool exr_file_load(exr_file *file, int threads, error *e);
@@ -82,6 +94,8 @@ bool exr_attr_float(const exr_file *file, int part, const char *name, double *va
 bool exr_attr_m44(const exr_file *file, int part, const char *name, double m[4][4]); // m44f or m44d, as stored: row vectors
 bool exr_attr_v2(const exr_file *file, int part, const char *name, double v[2]);     // v2f
 bool exr_attr_chromaticities(const exr_file *file, int part, double xy[8]);          // red, green, blue, white: x y each
+// Up to `most` strings of a string vector into values, valid until close; returns how many.
+int exr_attr_strings(const exr_file *file, int part, const char *name, const char **values, int most);
 bool exr_attr_exists(const exr_file *file, int part, const char *name);
 bool exr_attr_begins(const exr_file *file, int part, const char *beginning, size_t n); // any name with these n bytes in front
 

@@ -139,6 +139,8 @@ static exr_result_t put_ours(exr_context_t core, int index, const exr_out_attr *
         memcpy(&value, xy, sizeof value);
         return exr_attr_set_chromaticities(core, index, a->name, &value);
     }
+    case EXR_OUT_STRINGS:
+        return exr_attr_set_string_vector(core, index, a->name, a->string_count, (const char **)a->strings);
     case EXR_OUT_M44: {
         float m[16];
         for (int i = 0; i < 16; i++) m[i] = (float)a->m44[i / 4][i % 4];

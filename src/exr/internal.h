@@ -45,6 +45,10 @@ bool core_log_report(core_log *log, exr_result_t code, error_code kind, const ch
 // otherwise. What passes cannot lead the library's parser astray.
 bool exr_check_header(const char *path, error *e);
 
+// Fills the views of a part whose channels are known, and the view of each channel.
+bool exr_fill_views(const exr_file *file, int index, exr_part *p, error *e);
+void exr_free_views(exr_part *p);
+
 // The end of what exr_file_open_all made.
 void exr_merged_close(exr_file *file);
 

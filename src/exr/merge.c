@@ -68,8 +68,14 @@ static bool name_channels(exr_part *part, const char *pass, bool *renamed, error
     for (int c = 0; c < part->channel_count; c++) {
         exr_channel *channel = &part->channels[c];
         char name[STEM * 2];
-        if (strchr(channel->name, '.')) continue;
-        snprintf(name, sizeof name, "%s.%s", pass, channel->name);
+        char plain[STEM], with_pass[STEM * 2];
+        exr_name_without_view(channel, plain, sizeof plain);
+        if (strchr(plain, '.')) continue;
+        snprintf(with_pass, sizeof with_pass, "%s.%s", pass, plain);
+        if (channel->view[0])
+            exr_name_with_view(with_pass, channel->view, false, name, sizeof name);
+        else
+            snprintf(name, sizeof name, "%s", with_pass);
         char *copy = mem_string(name, e);
         if (!copy) return false;
         channel->stored = channel->name;

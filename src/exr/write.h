@@ -16,7 +16,7 @@ typedef struct exr_out_channel {
 } exr_out_channel;
 
 // (OpenEXR owns the names EXR_ATTR_*.)
-typedef enum exr_attr_kind { EXR_OUT_STRING, EXR_OUT_FLOAT, EXR_OUT_M44, EXR_OUT_CHROMATICITIES } exr_attr_kind;
+typedef enum exr_attr_kind { EXR_OUT_STRING, EXR_OUT_FLOAT, EXR_OUT_M44, EXR_OUT_CHROMATICITIES, EXR_OUT_STRINGS } exr_attr_kind;
 
 typedef struct exr_out_attr {
     const char *name;
@@ -25,6 +25,8 @@ typedef struct exr_out_attr {
     double number;
     double m44[4][4];
     double xy[8]; // as exr_attr_chromaticities gives them
+    const char *strings[EXR_VIEWS];
+    int string_count;
 } exr_out_attr;
 
 typedef struct exr_out_part {

@@ -49,14 +49,19 @@ static void part_layer(const exr_part *part, char *buf, size_t size)
 static void fill(const exr_file *file, int p, int c, layer_entry *out)
 {
     const exr_part *part = &file->parts[p];
-    const char *name = part->channels[c].name, *dot = strrchr(name, '.');
+    char name[256];
+    exr_name_without_view(&part->channels[c], name, sizeof name);
+    const char *dot = strrchr(name, '.');
     const char *component = component_of(dot ? dot + 1 : name);
     char own[256], prefix[256] = "";
     size_t length = component[0] ? (dot ? (size_t)(dot - name) : 0) : strlen(name);
     snprintf(own, sizeof own, "%.*s", (int)length, name);
     *out = (layer_entry){.ref = {p, c}};
     snprintf(out->component, sizeof out->component, "%s", component);
-    take_view(own, out->view, sizeof out->view);
+    if (part->view_count)
+        snprintf(out->view, sizeof out->view, "%s", part->channels[c].view);
+    else
+        take_view(own, out->view, sizeof out->view);
     if (part->view && part->view[0]) snprintf(out->view, sizeof out->view, "%.31s", part->view);
     if (file->part_count > 1) part_layer(part, prefix, sizeof prefix);
     bool joined = prefix[0] && own[0] && !starts_with_name(own, prefix);
@@ -64,6 +69,24 @@ static void fill(const exr_file *file, int p, int c, layer_entry *out)
         snprintf(out->layer, sizeof out->layer, "%s.%s", prefix, own);
     else
         snprintf(out->layer, sizeof out->layer, "%s", own[0] ? own : prefix);
+}
+
+// What the chosen view has itself stands before what is of no view; what is left is of none.
+static void prefer_own(layer_index *index)
+{
+    int kept = 0;
+    for (int i = 0; i < index->count; i++) {
+        const layer_entry *entry = &index->entries[i];
+        bool hidden = false;
+        for (int k = 0; k < index->count && !entry->view[0] && !hidden; k++) {
+            const layer_entry *other = &index->entries[k];
+            hidden = other->view[0] && other->ref.part == entry->ref.part && strcmp(other->component, entry->component) == 0 &&
+                     strcmp(other->layer, entry->layer) == 0;
+        }
+        if (!hidden) index->entries[kept++] = *entry;
+    }
+    index->count = kept;
+    for (int i = 0; i < kept; i++) index->entries[i].view[0] = 0;
 }
 
 bool layers_index(const exr_file *file, const char *view, layer_index *out, error *e)
@@ -77,9 +100,9 @@ bool layers_index(const exr_file *file, const char *view, layer_index *out, erro
             layer_entry *entry = &out->entries[out->count];
             fill(file, p, c, entry);
             if (view && entry->view[0] && strcmp(entry->view, view) != 0) continue;
-            if (view) entry->view[0] = 0;
             out->count++;
         }
+    if (view) prefer_own(out);
     return true;
 }
 

@@ -82,10 +82,12 @@ bool frame_read(const job *j, const char *input, frame_result *r, error *e) { re
 static bool resolve_view(const job *j, frame_result *r, error *e)
 {
     resolve_options ro = resolve_options_of(j->o);
+    char layer[128];
     ro.view = r->view;
-    if (r->view && ro.view_layer && strcmp(r->view, ro.view_layer) == 0) ro.view_layer = NULL;
+    ro.view_layer = view_layer_within(j->o, r->view, layer, sizeof layer);
     if (!resolve_channels(r->file, &ro, &r->resolution, j->log, e) ||
-        !plan_make(j->o, r->file, &r->resolution, &r->plan, j->log, e) || !output_check_names(j->o, r->file, &r->plan, e))
+        !plan_make(j->o, r->file, &r->resolution, &r->plan, j->log, e) ||
+        !output_check_names(j->o, r->file, r->view, &r->plan, e))
         return false;
     want_channels(j, r->file, &r->resolution, &r->plan);
     return !r->plan.from_sh || stored_sh_want(j->o, r->file, r->view, e);

@@ -9,7 +9,7 @@
 #include "exr/write.h"
 #include "pipeline/views.h"
 
-enum { MAX_OURS = LAYER_COUNT * 4 + 5, NAME_SIZE = 96, MAX_ATTRS = 12 };
+enum { MAX_OURS = LAYER_COUNT * 4 + 5, NAME_SIZE = 128, MAX_ATTRS = 12 + VIEWS_MAX };
 
 // Everything exr_write borrows for one view.
 typedef struct assembly {
@@ -20,7 +20,7 @@ typedef struct assembly {
     exr_out_attr attrs[MAX_ATTRS];
     int attr_count;
     char args[1024], camera[512], environment[600];
-    char part_name[64];
+    char part_name[64], camera_name[64];
 } assembly;
 
 // All of it.
@@ -29,37 +29,56 @@ typedef struct book {
     int view_count;
     exr_out_part *parts;
     int part_count;
+    exr_out_part *shared; // of views that names tell: the part that has the first one's layers, and so the others'
 } book;
 
-static void channel_name(const options *o, layer_id l, int k, char *name)
+// What a name in a file of ours depends on.
+typedef struct naming {
+    const options *o;
+    const exr_file *file;
+    const char *view; // NULL without views
+} naming;
+
+static void layer_channel(const naming *n, const char *layer, char component, char *name)
 {
-    snprintf(name, NAME_SIZE, "%s%s.%c", o->prefix ? o->prefix : "", layer_table[l].name, layer_table[l].channels[k]);
+    char plain[NAME_SIZE];
+    snprintf(plain, sizeof plain, "%s%s.%c", n->o->prefix ? n->o->prefix : "", layer, component);
+    view_name(n->file, n->view, plain, name, NAME_SIZE);
 }
 
-static bool is_ours(const options *o, const plan *p, const char *channel)
+static bool is_ours(const naming *n, const plan *p, const char *channel)
 {
     char name[NAME_SIZE];
     for (int l = 0; l < LAYER_COUNT; l++)
         for (int k = 0; p->layers & 1u << l && layer_table[l].channels[k]; k++) {
-            channel_name(o, (layer_id)l, k, name);
+            layer_channel(n, layer_table[l].name, layer_table[l].channels[k], name);
             if (strcmp(name, channel) == 0) return true;
         }
-    snprintf(name, sizeof name, "%scomposite.A", o->prefix ? o->prefix : "");
+    layer_channel(n, "composite", 'A', name);
     return p->layers & 1u << LAYER_COMPOSITE && strcmp(name, channel) == 0;
 }
 
-// R, G, B and A, which --main composite replaces.
-static bool is_main(const char *channel) { return channel[0] && !channel[1] && strchr("RGBA", channel[0]); }
-
-bool output_check_names(const options *o, const exr_file *file, const plan *p, error *e)
+// R, G, B and A of the view, which --main composite replaces.
+static bool is_main(const naming *n, const char *channel)
 {
+    char name[NAME_SIZE];
+    for (const char *c = "RGBA"; *c; c++) {
+        view_name(n->file, n->view, (const char[]){*c, 0}, name, sizeof name);
+        if (strcmp(name, channel) == 0) return true;
+    }
+    return false;
+}
+
+bool output_check_names(const options *o, const exr_file *file, const char *view, const plan *p, error *e)
+{
+    const naming n = {o, file, view};
     if (o->main_composite && !(p->layers & 1u << LAYER_COMPOSITE))
         return err_set(
             e, ERR_INPUT, file->path, NULL,
             "--main composite needs the composite layer, which is not made here; add it to --layers, or leave out --main");
     for (int i = 0; !o->keep_none && i < file->part_count; i++)
         for (int c = 0; c < file->parts[i].channel_count; c++)
-            if (is_ours(o, p, file->parts[i].channels[c].name) && !exr_attr_exists(file, i, "ssdo/version"))
+            if (is_ours(&n, p, file->parts[i].channels[c].name) && !exr_attr_exists(file, i, "ssdo/version"))
                 return err_set(e, ERR_INPUT, file->path, file->parts[i].channels[c].name,
                                "the input already has a channel that we would write, and it is not ours; use --prefix to name "
                                "ours otherwise");
@@ -71,8 +90,11 @@ bool output_keeps_chunks(const options *o, const exr_file *file, int part, const
 {
     const exr_part *in = &file->parts[part];
     if (!o->multipart || o->keep_none || o->compression || !exr_part_is_verbatim(in) || file->members) return false;
-    for (int c = 0; c < in->channel_count; c++)
-        if (is_ours(o, p, in->channels[c].name)) return false;
+    for (int v = -1; v < in->view_count; v++) { // of any view, so that the answer is the same for each
+        const naming n = {o, file, v < 0 ? NULL : in->views[v]};
+        for (int c = 0; c < in->channel_count; c++)
+            if (is_ours(&n, p, in->channels[c].name)) return false;
+    }
     return true;
 }
 
@@ -118,24 +140,29 @@ static bool add_channel(assembly *a, frame_result *r, const float *v, size_t str
 }
 
 // The channels of the composite once more, as R, G, B and A.
-static void add_main(assembly *a, const options *o)
+static void add_main(assembly *a, const naming *n)
 {
-    size_t prefix = o->prefix ? strlen(o->prefix) : 0;
-    for (int i = 0, n = a->our_count; i < n; i++) {
-        const char *name = a->names[i] + prefix;
-        if (strncmp(name, "composite.", 10) != 0) continue;
-        memcpy(a->names[a->our_count], name + 10, strlen(name + 10) + 1);
-        a->ours[a->our_count] = (exr_out_channel){a->names[a->our_count], a->ours[i].type, a->ours[i].data};
-        a->our_count++;
+    char name[NAME_SIZE];
+    for (const char *c = "RGBA"; *c; c++) {
+        layer_channel(n, "composite", *c, name);
+        for (int i = 0, count = a->our_count; i < count; i++) {
+            if (strcmp(a->names[i], name) != 0) continue;
+            view_name(n->file, n->view, (const char[]){*c, 0}, a->names[a->our_count], NAME_SIZE);
+            a->ours[a->our_count] = (exr_out_channel){a->names[a->our_count], a->ours[i].type, a->ours[i].data};
+            a->our_count++;
+        }
     }
 }
 
+static naming naming_of(const job *j, const frame_result *r) { return (naming){j->o, r->file, r->view}; }
+
 static bool add_layers(assembly *a, const job *j, frame_result *r, error *e)
 {
+    const naming n = naming_of(j, r);
     for (int l = 0; l < LAYER_COUNT; l++) {
         size_t channels = strlen(layer_table[l].channels);
         for (size_t k = 0; r->layers[l] && k < channels; k++) {
-            channel_name(j->o, (layer_id)l, (int)k, a->names[a->our_count]);
+            layer_channel(&n, layer_table[l].name, layer_table[l].channels[k], a->names[a->our_count]);
             if (!add_channel(a, r, r->layers[l] + k, channels, type_of(j, r, (layer_id)l), e)) return false;
         }
     }
@@ -143,7 +170,7 @@ static bool add_layers(assembly *a, const job *j, frame_result *r, error *e)
     // The composite's alpha is the input's own, bits and type.
     channel_ref ref = r->resolution.channels[ROLE_ALPHA][0];
     const exr_channel *alpha = &r->file->parts[ref.part].channels[ref.channel];
-    snprintf(a->names[a->our_count], NAME_SIZE, "%scomposite.A", j->o->prefix ? j->o->prefix : "");
+    layer_channel(&n, "composite", 'A', a->names[a->our_count]);
     a->ours[a->our_count] = (exr_out_channel){a->names[a->our_count], alpha->type, alpha->data};
     a->our_count++;
     return true;
@@ -178,18 +205,32 @@ static void add_attributes(assembly *a, const job *j, const frame_result *r)
     snprintf(a->environment, sizeof a->environment, "%s", j->o->env ? base_name(j->o->env) : "white, radiance 1");
     if (r->plan.light) add_attr(a, "ssdo/environment", EXR_OUT_STRING)->string = a->environment;
     // A part of our own copies nothing else from the input's.
+    if (view_in_names(r->file, r->view)) {
+        exr_out_attr *views = add_attr(a, "multiView", EXR_OUT_STRINGS);
+        views->string_count = exr_attr_strings(r->file, r->resolution.main_part, "multiView", views->strings, EXR_VIEWS);
+    }
     exr_out_attr primaries = {.name = "chromaticities", .kind = EXR_OUT_CHROMATICITIES};
     if (exr_attr_chromaticities(r->file, r->resolution.main_part, primaries.xy)) a->attrs[a->attr_count++] = primaries;
     add_attr(a, "ssdo/premult", EXR_OUT_STRING)->string =
         "composite: premultiplied; occlusion, visibility: ratios; radiance, indirect: per unit coverage";
 }
 
+// Made anew, for the view or (where names tell views) any that comes after it in the list.
+static bool is_replaced(const job *j, const frame_result *r, const char *channel, bool merged)
+{
+    for (bool in_names = view_in_names(r->file, r->view); r; r = in_names ? r->next_view : NULL) {
+        const naming n = naming_of(j, r);
+        if (is_ours(&n, &r->plan, channel) || (merged && j->o->main_composite && is_main(&n, channel))) return true;
+    }
+    return false;
+}
+
 // The input's channels of one part that are passed through, appended to out.
-static int keep_channels(const options *o, const plan *p, const exr_part *part, bool merged, exr_out_channel *out)
+static int keep_channels(const job *j, const frame_result *r, const exr_part *part, bool merged, exr_out_channel *out)
 {
     int n = 0;
     for (int c = 0; c < part->channel_count; c++)
-        if (!is_ours(o, p, part->channels[c].name) && !(merged && o->main_composite && is_main(part->channels[c].name)))
+        if (!is_replaced(j, r, part->channels[c].name, merged))
             out[n++] = (exr_out_channel){part->channels[c].name, part->channels[c].type, part->channels[c].data};
     return n;
 }
@@ -253,6 +294,13 @@ static int total_channels(const exr_file *f)
     return n;
 }
 
+static int view_count(const frame_result *r)
+{
+    int n = 0;
+    for (; r; r = r->next_view) n++;
+    return n;
+}
+
 // Our channels go to the end of the last part.
 static void append_ours(assembly *a, exr_out_part *part)
 {
@@ -261,19 +309,30 @@ static void append_ours(assembly *a, exr_out_part *part)
     part->attribute_count = a->attr_count;
 }
 
+// A further view in the part that has the first one's: only the camera is its own.
+static void append_view(book *k, assembly *a, const frame_result *r)
+{
+    assembly *first = k->views[0];
+    for (int i = 0; i < a->our_count; i++) k->shared->channels[k->shared->channel_count++] = a->ours[i];
+    snprintf(a->camera_name, sizeof a->camera_name, "ssdo/camera.%s", r->view);
+    add_attr(first, a->camera_name, EXR_OUT_STRING)->string = a->camera;
+    k->shared->attribute_count = first->attr_count;
+}
+
 // The view's parts and our layers as one.
 static bool merge_parts(book *k, assembly *a, const job *j, const frame_result *r, error *e)
 {
     const exr_file *f = r->file;
-    exr_out_part *only = &k->parts[k->part_count++];
+    const char *view = view_in_names(f, r->view) ? NULL : r->view;
+    exr_out_part *only = k->shared = &k->parts[k->part_count++];
     *only = part_like(j->o, f, r->resolution.main_part);
-    if (f->part_count > 1 && !r->view) only->name = only->view = NULL;
-    if (r->view) only->view = r->view;
-    if (r->view && !only->name[0]) only->name = r->view;
-    if (!room(only, total_channels(f) + a->our_count, e)) return false;
+    if (f->part_count > 1 && !view) only->name = only->view = NULL;
+    if (view) only->view = view;
+    if (view && !only->name[0]) only->name = view;
+    if (!room(only, total_channels(f) + MAX_OURS * view_count(r), e)) return false;
     for (int i = 0; !j->o->keep_none && i < f->part_count; i++)
         if (view_has(&f->parts[i], r->view))
-            only->channel_count += keep_channels(j->o, &r->plan, &f->parts[i], true, only->channels + only->channel_count);
+            only->channel_count += keep_channels(j, r, &f->parts[i], true, only->channels + only->channel_count);
     append_ours(a, only);
     return true;
 }
@@ -285,7 +344,7 @@ static bool keep_part(book *k, const job *j, const frame_result *r, int i, error
     *part = part_like(j->o, f, i);
     if (output_keeps_chunks(j->o, f, i, &r->plan)) part->compression = f->parts[i].compression;
     if (!room(part, f->parts[i].channel_count, e)) return false;
-    part->channel_count = keep_channels(j->o, &r->plan, &f->parts[i], false, part->channels);
+    part->channel_count = keep_channels(j, r, &f->parts[i], false, part->channels);
     part->verbatim = output_keeps_chunks(j->o, f, i, &r->plan);
     if (!part->name[0]) part->name = "input"; // parts of a multi-part file need names
     return true;
@@ -295,17 +354,18 @@ static bool keep_part(book *k, const job *j, const frame_result *r, int i, error
 static bool add_part(book *k, assembly *a, const job *j, frame_result *r, error *e)
 {
     const exr_file *f = r->file;
-    snprintf(a->part_name, sizeof a->part_name, "ssdo%s%s", r->view ? "." : "", r->view ? r->view : "");
+    const char *view = view_in_names(f, r->view) ? NULL : r->view;
+    snprintf(a->part_name, sizeof a->part_name, "ssdo%s%s", view ? "." : "", view ? view : "");
     for (int i = 0; i < f->part_count; i++) {
         bool earlier_run = strcmp(f->parts[i].name, a->part_name) == 0 && exr_attr_exists(f, i, "ssdo/version");
         if (view_has(&f->parts[i], r->view) && !earlier_run && !keep_part(k, j, r, i, e)) return false;
     }
-    exr_out_part *mine = &k->parts[k->part_count++];
+    exr_out_part *mine = k->shared = &k->parts[k->part_count++];
     *mine = part_like(j->o, f, r->resolution.main_part);
     mine->name = a->part_name;
-    if (r->view) mine->view = r->view;
+    if (view) mine->view = view;
     mine->attributes_from = NULL;
-    if (!room(mine, a->our_count, e)) return false;
+    if (!room(mine, MAX_OURS * view_count(r), e)) return false;
     append_ours(a, mine);
     r->second_part = true;
     if (!j->o->multipart)
@@ -336,8 +396,13 @@ static bool add_view(book *k, const job *j, frame_result *r, error *e)
     if (!a) return false;
     k->view_count++;
     if (!add_layers(a, j, r, e)) return false;
-    if (j->o->main_composite) add_main(a, j->o);
+    const naming n = naming_of(j, r);
+    if (j->o->main_composite) add_main(a, &n);
     add_attributes(a, j, r);
+    if (k->shared && view_in_names(r->file, r->view)) {
+        append_view(k, a, r);
+        return true;
+    }
     bool merge = j->o->keep_none || (!j->o->multipart && can_merge(r->file, r->view));
     return merge ? merge_parts(k, a, j, r, e) : add_part(k, a, j, r, e);
 }

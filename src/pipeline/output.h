@@ -5,15 +5,15 @@
 #include "pipeline/frame.h"
 
 // Input channels that already carry names of ours are replaced if the file says we made them (ssdo/version), else ERR_INPUT
-// naming
-// --prefix. Called before any pixel is read, so that a long job does not fail at its end.
-bool output_check_names(const options *o, const exr_file *file, const plan *p, error *e);
+// naming --prefix. Called before any pixel is read, so that a long job does not fail at its end. view: the one to be written.
+bool output_check_names(const options *o, const exr_file *file, const char *view, const plan *p, error *e);
 
 // --layout multipart: true if the part goes through as stored, so that its channels need not be read for writing.
 bool output_keeps_chunks(const options *o, const exr_file *file, int part, const plan *p);
 
 // Writes the file. Of a stereo file each view is treated so: its parts keep their `view`, and our layers have the same names in
-// each. Parts of no filtered view pass through as they are. A single-part input stays single-part. Parts of a multi-part input
+// each; where channel names tell the views (one part), ours do too: occlusion.right.R. Parts of no filtered view pass through as
+// they are. A single-part input stays single-part. Parts of a multi-part input
 // are merged into one where windows and names allow; otherwise they are kept as they are and our layers go into a part of their
 // own, named "ssdo".
 bool output_write(const job *j, frame_result *r, const char *path, error *e);

@@ -9,15 +9,17 @@
 #include "pipeline/layers.h"
 #include "pipeline/views.h"
 
-enum { NAME_SIZE = 96 };
+enum { NAME_SIZE = 128 };
 
 static int count(const options *o) { return o->sh_bands == 3 ? 16 : 9; }
 
 // Coefficients 0 to 8 are in layers of three, 9 to 15 in one of seven.
-static void name_of(const options *o, int i, char *name)
+static void name_of(const options *o, const exr_file *file, const char *view, int i, char *name)
 {
+    char plain[NAME_SIZE];
     const layer_info *l = &layer_table[i < 9 ? LAYER_SH_0 + i / 3 : LAYER_SH_3];
-    snprintf(name, NAME_SIZE, "%s%s.%c", o->prefix ? o->prefix : "", l->name, l->channels[i < 9 ? i % 3 : i - 9]);
+    snprintf(plain, NAME_SIZE, "%s%s.%c", o->prefix ? o->prefix : "", l->name, l->channels[i < 9 ? i % 3 : i - 9]);
+    view_name(file, view, plain, name, NAME_SIZE);
 }
 
 static exr_channel *find(const exr_file *file, const char *view, const char *name, const exr_part **part)
@@ -36,7 +38,7 @@ bool stored_sh_want(const options *o, exr_file *file, const char *view, error *e
     const exr_part *part;
     for (int i = 0; i < count(o); i++) {
         char name[NAME_SIZE];
-        name_of(o, i, name);
+        name_of(o, file, view, i, name);
         exr_channel *channel = find(file, view, name, &part);
         if (!channel)
             return err_set(e, ERR_INPUT, file->path, name,
@@ -60,7 +62,7 @@ bool stored_sh_load(const options *o, const exr_file *file, const char *view, co
     size_t n = (size_t)gb->width * (size_t)gb->height;
     for (int i = 0; i < count(o); i++) {
         char name[NAME_SIZE];
-        name_of(o, i, name);
+        name_of(o, file, view, i, name);
         const exr_part *part = NULL;
         const exr_channel *channel = find(file, view, name, &part);
         if (!channel || !channel->data || !box2_equal(part->data_window, gb->data_window))

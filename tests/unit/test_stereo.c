@@ -101,6 +101,38 @@ static void write_stereo(const char *path, bool part_per_layer)
     for (int i = 0; i < EYES; i++) exr_file_close(files[i]);
 }
 
+// Both eyes in one part, told apart by names: P.right.X, right.R; the left eye's are P.left.X and R, or P.X where it is left
+// bare.
+static void write_names(const char *path, bool bare)
+{
+    exr_out_channel channels[EYES * 16];
+    static char names[EYES * 16][64];
+    exr_out_attr multi = {.name = "multiView", .kind = EXR_OUT_STRINGS, .strings = {"left", "right"}, .string_count = EYES};
+    exr_out_part part = {.pixel_aspect = 1, .compression = 3, .channels = channels, .attributes = &multi, .attribute_count = 1};
+    exr_file *files[EYES];
+    error e = {0};
+    for (int i = 0; i < EYES; i++) {
+        must(exr_file_open(mono[i], &files[i], &e), &e);
+        exr_part *from = &files[i]->parts[0];
+        part.data_window = from->data_window, part.display_window = from->display_window;
+        for (int c = 0; c < from->channel_count; c++) from->channels[c].wanted = true;
+        must(exr_file_load(files[i], 1, &e), &e);
+        for (int c = 0; c < from->channel_count; c++) {
+            const exr_channel *ch = &from->channels[c];
+            const char *dot = strrchr(ch->name, '.');
+            char *name = names[part.channel_count];
+            if (i == 0 && (bare || !dot))
+                snprintf(name, sizeof *names, "%s", ch->name);
+            else
+                snprintf(name, sizeof *names, "%.*s%s.%s", dot ? (int)(dot + 1 - ch->name) : 0, ch->name, eyes[i],
+                         dot ? dot + 1 : ch->name);
+            channels[part.channel_count++] = (exr_out_channel){name, ch->type, ch->data};
+        }
+    }
+    must(exr_write(path, &part, 1, 1, &e), &e);
+    for (int i = 0; i < EYES; i++) exr_file_close(files[i]);
+}
+
 static void same_layers(const frame_result *a, const frame_result *b)
 {
     for (int l = LAYER_OCCLUSION; l <= LAYER_COMPOSITE; l++) {
@@ -119,16 +151,11 @@ static int channel_count(const exr_file *f, const char *eye, const char *name)
     return n;
 }
 
-static void check(bool part_per_layer, bool multipart, int parts)
+// Each eye's layers are what its own file gives.
+static void filter_both(const char *in, const char *out)
 {
-    char in[300], out[300];
     error e = {0};
     frame_result both, one;
-    exr_file *f;
-    snprintf(in, sizeof in, "%s/stereo.exr", folder);
-    snprintf(out, sizeof out, "%s/out.exr", folder);
-    write_stereo(in, part_per_layer);
-    settings.multipart = multipart;
     must(frame_run(&work, in, out, &both, &e), &e);
     const frame_result *v = &both;
     for (int i = 0; i < EYES; i++, v = v->next_view) {
@@ -142,6 +169,18 @@ static void check(bool part_per_layer, bool multipart, int parts)
     assert_null(v);
     assert_true(fabs(both.gb.camera.fx / both.next_view->gb.camera.fx - 1.0) > 0.05); // each has its own lens
     frame_free(&both);
+}
+
+static void check(bool part_per_layer, bool multipart, int parts)
+{
+    char in[300], out[300];
+    error e = {0};
+    exr_file *f;
+    snprintf(in, sizeof in, "%s/stereo.exr", folder);
+    snprintf(out, sizeof out, "%s/out.exr", folder);
+    write_stereo(in, part_per_layer);
+    settings.multipart = multipart;
+    filter_both(in, out);
     must(exr_file_open(out, &f, &e), &e);
     assert_int_equal(f->part_count, parts);
     for (int i = 0; i < EYES; i++) {
@@ -190,12 +229,85 @@ static void one_eye_of_two(void **state)
     settings.view_layer = NULL;
 }
 
+static int has(const exr_file *f, const char *name) { return channel_count(f, "", name); }
+
+// The views are in the names: so are ours, in the one part, by OpenEXR's rule. A second run replaces them.
+static void views_in_names(void **state)
+{
+    static const char *const want[] = {"occlusion.left.R", "occlusion.right.R", "radiance.left.G",  "radiance.right.G",
+                                       "composite.left.A", "composite.right.A", "indirect.right.B", "P.right.X"};
+    char in[300], out[300], again[300];
+    const char *text;
+    error e = {0};
+    exr_file *f;
+    (void)state;
+    snprintf(in, sizeof in, "%s/names.exr", folder);
+    snprintf(out, sizeof out, "%s/out.exr", folder);
+    snprintf(again, sizeof again, "%s/again.exr", folder);
+    settings.multipart = false;
+    for (int bare = 0; bare < 2; bare++) {
+        write_names(in, bare);
+        filter_both(in, out);
+        filter_both(out, again);
+        must(exr_file_open(again, &f, &e), &e);
+        assert_int_equal(f->part_count, 1);
+        assert_string_equal(f->parts[0].view, "");
+        assert_int_equal(f->parts[0].view_count, EYES);
+        assert_int_equal(f->parts[0].channel_count, EYES * (14 + 11));
+        for (int i = 0; i < 8; i++) assert_int_equal(has(f, want[i]), 1);
+        assert_int_equal(has(f, bare ? "P.X" : "P.left.X"), 1);
+        assert_true(exr_attr_string(f, 0, "ssdo/camera", &text) && exr_attr_string(f, 0, "ssdo/camera.right", &text));
+        exr_file_close(f);
+    }
+}
+
+// In a part of their own, too; --main composite gives each eye its picture; --view-layer takes one eye, whose pass goes first.
+static void views_in_names_otherwise(void **state)
+{
+    char in[300], out[300];
+    error e = {0};
+    frame_result r;
+    exr_file *f;
+    (void)state;
+    snprintf(in, sizeof in, "%s/names.exr", folder);
+    snprintf(out, sizeof out, "%s/out.exr", folder);
+    write_names(in, false);
+    settings.multipart = true;
+    filter_both(in, out);
+    must(exr_file_open(out, &f, &e), &e);
+    assert_int_equal(f->part_count, 2);
+    assert_string_equal(f->parts[1].name, "ssdo");
+    assert_int_equal(f->parts[1].view_count, EYES);
+    assert_int_equal(has(f, "occlusion.right.R"), 1);
+    exr_file_close(f);
+    settings.multipart = false;
+
+    settings.main_composite = settings.keep_none = true;
+    filter_both(in, out);
+    must(exr_file_open(out, &f, &e), &e);
+    assert_int_equal(f->parts[0].channel_count, EYES * (11 + 4));
+    assert_int_equal(has(f, "R") + has(f, "A") + has(f, "right.R") + has(f, "right.A"), 4);
+    exr_file_close(f);
+    settings.main_composite = settings.keep_none = false;
+
+    settings.view_layer = "right";
+    must(frame_run(&work, in, out, &r, &e), &e);
+    assert_null(r.next_view);
+    assert_string_equal(r.view, "right");
+    frame_free(&r);
+    must(exr_file_open(out, &f, &e), &e);
+    assert_int_equal(has(f, "occlusion.right.R"), 1);
+    assert_int_equal(has(f, "occlusion.left.R"), 0);
+    assert_int_equal(has(f, "P.left.X"), 1);
+    exr_file_close(f);
+    settings.view_layer = NULL;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_part_per_eye),
-        cmocka_unit_test(a_part_per_eye_and_layer),
-        cmocka_unit_test(one_eye_of_two),
+        cmocka_unit_test(a_part_per_eye), cmocka_unit_test(a_part_per_eye_and_layer), cmocka_unit_test(one_eye_of_two),
+        cmocka_unit_test(views_in_names), cmocka_unit_test(views_in_names_otherwise),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

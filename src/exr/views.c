@@ -1,0 +1,88 @@
+// Stereo views told by channel names: OpenEXR's single-part multi-view form (the attribute multiView; exr_channel.view).
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "exr/internal.h"
+
+// The view's word of a name ("right" in "layer.right.R"), as long as *length; NULL in a name without a dot.
+static const char *view_word(const char *name, size_t *length)
+{
+    const char *end = strrchr(name, '.'), *start = end;
+    if (!end) return NULL;
+    while (start > name && start[-1] != '.') start--;
+    *length = (size_t)(end - start);
+    return start;
+}
+
+// OpenEXR's rule: the word before the component; a name of one word is the default view's, all others are nobody's own.
+static const char *view_by_name(const exr_part *p, const char *name)
+{
+    size_t length;
+    const char *word = view_word(name, &length);
+    if (!word) return p->views[0];
+    for (int v = 0; v < p->view_count; v++)
+        if (strlen(p->views[v]) == length && strncmp(word, p->views[v], length) == 0) return p->views[v];
+    return "";
+}
+
+static void forget_views(exr_part *p)
+{
+    for (int c = 0; c < p->channel_count; c++) p->channels[c].view = "";
+    for (int v = 0; v < p->view_count; v++) free(p->views[v]);
+    p->view_count = 0;
+}
+
+static int views_with_channels(const exr_part *p)
+{
+    int n = 0;
+    for (int v = 0; v < p->view_count; v++)
+        for (int c = 0; c < p->channel_count; c++)
+            if (p->channels[c].view == p->views[v]) {
+                n++;
+                break;
+            }
+    return n;
+}
+
+bool exr_fill_views(const exr_file *file, int index, exr_part *p, error *e)
+{
+    const char *names[EXR_VIEWS];
+    int count = p->view[0] ? 0 : exr_attr_strings(file, index, "multiView", names, EXR_VIEWS);
+    for (int v = 0; v < count; v++) {
+        size_t n = strlen(names[v]);
+        if (n < 1 || n > EXR_SHORT_NAME || strchr(names[v], '.')) continue;
+        if (!(p->views[p->view_count] = mem_string(names[v], e))) return false;
+        p->view_count++;
+    }
+    for (int c = 0; c < p->channel_count; c++) p->channels[c].view = p->view_count ? view_by_name(p, p->channels[c].name) : "";
+    // The attribute travels with pictures that are no longer stereo.
+    if (views_with_channels(p) < 2) forget_views(p);
+    return true;
+}
+
+void exr_free_views(exr_part *p)
+{
+    for (int v = 0; v < p->view_count; v++) free(p->views[v]);
+    p->view_count = 0;
+}
+
+void exr_name_without_view(const exr_channel *c, char *out, size_t size)
+{
+    size_t length = 0;
+    const char *word = c->view[0] ? view_word(c->name, &length) : NULL;
+    if (word)
+        snprintf(out, size, "%.*s%s", (int)(word - c->name), c->name, word + length + 1);
+    else
+        snprintf(out, size, "%s", c->name);
+}
+
+void exr_name_with_view(const char *name, const char *view, bool is_default, char *out, size_t size)
+{
+    const char *dot = strrchr(name, '.');
+    if (!dot && is_default)
+        snprintf(out, size, "%s", name);
+    else
+        snprintf(out, size, "%.*s%s.%s", dot ? (int)(dot + 1 - name) : 0, name, view, dot ? dot + 1 : name);
+}
