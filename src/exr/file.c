@@ -148,7 +148,6 @@ static bool fill_channels(exr_file *file, int index, exr_part *p, error *e)
         if ((unsigned)entry->pixel_type >= EXR_PIXEL_LAST_TYPE)
             return err_set(e, ERR_INPUT, file->path, entry->name.str, "is damaged: unknown pixel type; render it again");
         p->channels[c].type = (sample_type)entry->pixel_type;
-        p->channels[c].view = "";
         p->channels[c].name = mem_string(entry->name.str, e);
         if (!p->channels[c].name) return false;
         p->channel_count = c + 1;

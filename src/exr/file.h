@@ -32,7 +32,7 @@ static inline bool box2_equal(box2 a, box2 b) { return a.x0 == b.x0 && a.y0 == b
 typedef struct exr_channel {
     char *name;
     char *stored;     // its name in the file, where exr_file_open_all gave it another; else NULL
-    const char *view; // the stereo view that its name says, one of the part's views; "" for none
+    const char *view; // the stereo view that its name says, one of the part's views; NULL for none
     sample_type type;
     bool wanted; // set before exr_file_load: read this channel's pixels
     void *data;  // width * height samples of `type`, native byte order; NULL until loaded

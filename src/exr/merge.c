@@ -72,7 +72,7 @@ static bool name_channels(exr_part *part, const char *pass, bool *renamed, error
         exr_name_without_view(channel, plain, sizeof plain);
         if (strchr(plain, '.')) continue;
         snprintf(with_pass, sizeof with_pass, "%s.%s", pass, plain);
-        if (channel->view[0])
+        if (channel->view)
             exr_name_with_view(with_pass, channel->view, false, name, sizeof name);
         else
             snprintf(name, sizeof name, "%s", with_pass);

@@ -24,12 +24,12 @@ static const char *view_by_name(const exr_part *p, const char *name)
     if (!word) return p->views[0];
     for (int v = 0; v < p->view_count; v++)
         if (strlen(p->views[v]) == length && strncmp(word, p->views[v], length) == 0) return p->views[v];
-    return "";
+    return NULL;
 }
 
 static void forget_views(exr_part *p)
 {
-    for (int c = 0; c < p->channel_count; c++) p->channels[c].view = "";
+    for (int c = 0; c < p->channel_count; c++) p->channels[c].view = NULL;
     for (int v = 0; v < p->view_count; v++) free(p->views[v]);
     p->view_count = 0;
 }
@@ -56,7 +56,7 @@ bool exr_fill_views(const exr_file *file, int index, exr_part *p, error *e)
         if (!(p->views[p->view_count] = mem_string(names[v], e))) return false;
         p->view_count++;
     }
-    for (int c = 0; c < p->channel_count; c++) p->channels[c].view = p->view_count ? view_by_name(p, p->channels[c].name) : "";
+    for (int c = 0; c < p->channel_count; c++) p->channels[c].view = p->view_count ? view_by_name(p, p->channels[c].name) : NULL;
     // The attribute travels with pictures that are no longer stereo.
     if (views_with_channels(p) < 2) forget_views(p);
     return true;
@@ -71,7 +71,7 @@ void exr_free_views(exr_part *p)
 void exr_name_without_view(const exr_channel *c, char *out, size_t size)
 {
     size_t length = 0;
-    const char *word = c->view[0] ? view_word(c->name, &length) : NULL;
+    const char *word = c->view ? view_word(c->name, &length) : NULL;
     if (word)
         snprintf(out, size, "%.*s%s", (int)(word - c->name), c->name, word + length + 1);
     else

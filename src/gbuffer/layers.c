@@ -59,7 +59,7 @@ static void fill(const exr_file *file, int p, int c, layer_entry *out)
     *out = (layer_entry){.ref = {p, c}};
     snprintf(out->component, sizeof out->component, "%s", component);
     if (part->view_count)
-        snprintf(out->view, sizeof out->view, "%s", part->channels[c].view);
+        snprintf(out->view, sizeof out->view, "%s", part->channels[c].view ? part->channels[c].view : "");
     else
         take_view(own, out->view, sizeof out->view);
     if (part->view && part->view[0]) snprintf(out->view, sizeof out->view, "%.31s", part->view);
