@@ -71,7 +71,7 @@ static bool run_step(trace_run *r, const char *name, const char *defines, size_t
 {
     pass_context *c = r->c;
     size_t end = first + r->batch < r->pixel_count ? first + r->batch : r->pixel_count;
-    GLuint program = gpu_program(c->g, name, defines, e);
+    GLuint program = pass_program(c, name, defines, e);
     if (!program) return false;
     glUseProgram(program);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, c->frame_uniforms);

@@ -44,13 +44,13 @@ static void write_corner(bool turned)
     fclose(f);
 }
 
-static gbuffer shoot_corner(scene *s, view *v)
+static gbuffer shoot_corner(scene *s, view *v, bool orthographic)
 {
     gbuffer gb;
     error e = {0};
     *s = (scene){0};
     scene_corner(s, 0.4);
-    *v = view_perspective(WIDTH, HEIGHT, 50.0, 1.0);
+    *v = orthographic ? view_orthographic(WIDTH, HEIGHT, 2.0, 1.0) : view_perspective(WIDTH, HEIGHT, 50.0, 1.0);
     view_scene(v, s);
     must(scene_gbuffer(s, v, &gb, &e), &e);
     return gb;
@@ -75,13 +75,13 @@ static void corner_is_the_closed_form(void **state)
     view v;
     rig r;
     error e = {0};
-    for (int run = 0; run < 4; run++) {
+    for (int run = 0; run < 8; run++) {
         frame_result out;
-        bool turned = run & 1;
+        bool turned = run & 1, orthographic = run & 2;
         must(rig_open(&r, &(env_options){.up_z = true, .scale = 1.0}, &e), &e);
         write_corner(turned);
-        gbuffer gb = shoot_corner(&s, &v);
-        pass_settings set = settings(s.radius, 64, backends[run / 2]);
+        gbuffer gb = shoot_corner(&s, &v, orthographic);
+        pass_settings set = settings(s.radius, 256, backends[run / 4]);
         must(rig_run(&r, &gb, &method_raytrace, &set, ALL, &out, &e), &e);
         double worst = 0.0, distance = 0.0, off = 0.0, light = 0.0, bounce = 0.0, n = 0.0;
         for (int i = 0; i < WIDTH * HEIGHT; i++) {
@@ -97,10 +97,10 @@ static void corner_is_the_closed_form(void **state)
             bounce += (double)out.layers[LAYER_INDIRECT][3 * i + 2];
             if (x > 1.01 * s.radius && out.layers[LAYER_OCCLUSION][i] != 1.0f) fail_msg("pixel %d is not open", i);
         }
-        print_message("back end %d: occlusion off by %+.5f (worst %.3f), radiance %.5f, indirect %.5f\n", backends[run / 2],
+        print_message("back end %d: occlusion off by %+.5f (worst %.3f), radiance %.5f, indirect %.5f\n", backends[run / 4],
                       off / n, worst, light / n, bounce / n);
-        assert_near(off / n, 0.0, 5e-4);
-        assert_true(worst < 0.15); // 64 samples
+        assert_near(off / n, 0.0, 2e-4);
+        assert_true(worst < 0.06); // 256 samples
         // The wall ends 1000 units to either side, so a share of x / (1000 pi) passes it; of the light it sends, more.
         assert_near(light / n, 0.5 + distance / n / (1000.0 * M_PI), 5e-4);
         assert_near(bounce / n, 0.125, 2e-3);
@@ -122,7 +122,7 @@ static void foreign_mesh_is_refused(void **state)
     frame_result out;
     must(rig_open(&r, NULL, &e), &e);
     write_corner(true);
-    gbuffer gb = shoot_corner(&s, &v);
+    gbuffer gb = shoot_corner(&s, &v, false);
     gb.camera.origin = v3_add(gb.camera.origin, v3(0, 0.3, 0.3)); // neither of its surfaces fits now
     pass_settings set = settings(s.radius, 1, TRACE_EMBREE);
     set.mesh_axes = 0;
@@ -155,7 +155,7 @@ static void missing_module_is_named(void **state)
     setenv("SSDO_PLUGIN_DIR", "/nowhere", 1);
     must(rig_open(&r, NULL, &e), &e);
     write_corner(false);
-    gbuffer gb = shoot_corner(&s, &v);
+    gbuffer gb = shoot_corner(&s, &v, false);
     pass_settings set = settings(s.radius, 1, TRACE_EMBREE);
     assert_false(rig_run(&r, &gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e));
     assert_int_equal(e.code, ERR_USAGE);
@@ -185,7 +185,7 @@ static void nothing_becomes_nan(void **state)
     for (int b = 0; b < 2; b++) {
         frame_result out;
         write_corner(false);
-        gbuffer gb = shoot_corner(&s, &v);
+        gbuffer gb = shoot_corner(&s, &v, false);
         for (int i = 0; i < WIDTH * HEIGHT; i++) {
             if (i % 7 == 0) gb.depth[i] = 1e10f;
             if (i % 5 == 0) memset(gb.normal + 4 * i, 0, 3 * sizeof *gb.normal);
