@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
+#include "base/mem.h"
 #include "base/outfile.h"
 #include "cli/options.h"
 #include "pipeline/batch.h"
@@ -84,6 +85,7 @@ int main(int argc, char **argv)
 {
     error e = {0};
     options o;
+    mem_set_up();
     setlocale(LC_NUMERIC, "C"); // whatever LC_ALL says
     catch_signals();
     options_defaults(&o);

@@ -1,10 +1,18 @@
 #include "base/mem.h"
 
+#include <malloc.h>
 #include <stdatomic.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { PICTURE = 1 << 16 }; // bytes from which a block counts as a picture
+
+void mem_set_up(void)
+{
+    mallopt(M_MMAP_THRESHOLD, PICTURE); // also ends its growing with the blocks that are freed
+}
 
 // True when SSDO_FAIL_ALLOC names this allocation. The counter is the one piece of global state: allocations have no context.
 static bool injected(void)

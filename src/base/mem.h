@@ -7,6 +7,11 @@
 
 #include "base/error.h"
 
+// To be called once, before the first thread starts: pictures are taken from the system and given back to it one by one. Left to
+// itself the C library keeps freed pictures for later ones, of other sizes and on other threads, and a batch grows from frame to
+// frame.
+void mem_set_up(void);
+
 // count * size zeroed bytes, or NULL with ERR_MEMORY (also when the product overflows). count 0 gives a valid pointer.
 void *mem_zero(size_t count, size_t size, error *e);
 // The same, uninitialised and aligned to 64 bytes, for pixel data. Freed with free().
