@@ -1,8 +1,10 @@
 #include "base/outfile.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -74,20 +76,67 @@ static uint64_t random_number(void)
     return (uint64_t)now.tv_sec * 1000000007u ^ (uint64_t)now.tv_nsec;
 }
 
-// ".NAME.HOST-PID-RANDOM.tmp" beside the target; name and host are cut so that the whole stays below NAME_MAX.
-static char *temp_name(const char *target, error *e)
+// Says where a process id means something: this boot of this machine, this PID namespace (containers may share a host's name but
+// not their processes). FNV-1a of both; 0 where /proc does not tell.
+static uint64_t machine_tag(void)
+{
+    static const char *const id = "/proc/sys/kernel/random/boot_id", *const space = "/proc/self/ns/pid";
+    char text[128] = "";
+    int fd = open(id, O_RDONLY | O_CLOEXEC);
+    ssize_t n = fd >= 0 ? read(fd, text, 64) : -1;
+    if (fd >= 0) close(fd);
+    ssize_t m = n > 0 ? readlink(space, text + n, sizeof text - (size_t)n) : -1;
+    if (m <= 0) return 0;
+    uint64_t h = 14695981039346656037u;
+    for (ssize_t i = 0; i < n + m; i++) h = (h ^ (unsigned char)text[i]) * 1099511628211u;
+    return h;
+}
+
+// ".NAME.HOST-", which the target's temporary files of this host begin with, without the folder; name and host are cut so that
+// the whole stays below NAME_MAX.
+static void temp_beginning(const char *target, char *out, size_t size)
 {
     char host[64] = "host";
     gethostname(host, sizeof host - 1);
     host[sizeof host - 1] = '\0';
     for (char *p = host; *p; p++)
         if (*p == '/') *p = '_';
+    snprintf(out, size, ".%.96s.%s-", target + folder_length(target), host);
+}
+
+// FOLDER/BEGINNING PID-TAG-RANDOM.tmp
+static char *temp_name(const char *target, const char *beginning, error *e)
+{
     size_t folder = folder_length(target), size = folder + 256;
     char *name = mem_zero(size, 1, e);
     if (name)
-        snprintf(name, size, "%.*s.%.96s.%s-%ld-%016llx.tmp", (int)folder, target, target + folder, host, (long)getpid(),
-                 (unsigned long long)random_number());
+        snprintf(name, size, "%.*s%s%ld-%016llx-%016llx.tmp", (int)folder, target, beginning, (long)getpid(),
+                 (unsigned long long)machine_tag(), (unsigned long long)random_number());
     return name;
+}
+
+// True for what follows the beginning of a temporary file whose process is known to be gone: killed, with no time to clean up.
+static bool is_abandoned(const char *rest, uint64_t here)
+{
+    char *end;
+    long pid = strtol(rest, &end, 10);
+    if (pid < 1 || *end != '-' || strlen(end) != 1 + 16 + 1 + 16 + 4) return false;
+    uint64_t tag = strtoull(end + 1, &end, 16);
+    bool shape = *end == '-' && strspn(end + 1, "0123456789abcdef") == 16 && strcmp(end + 17, ".tmp") == 0;
+    return shape && here != 0 && tag == here && kill((pid_t)pid, 0) != 0 && errno == ESRCH;
+}
+
+static void remove_abandoned(const char *target, const char *beginning)
+{
+    size_t folder = folder_length(target), length = strlen(beginning);
+    char *path = folder ? strndup(target, folder) : strdup(".");
+    DIR *d = path ? opendir(path) : NULL;
+    uint64_t here = machine_tag();
+    for (struct dirent *entry; d && (entry = readdir(d));)
+        if (strncmp(entry->d_name, beginning, length) == 0 && is_abandoned(entry->d_name + length, here))
+            unlinkat(dirfd(d), entry->d_name, 0);
+    if (d) closedir(d);
+    free(path);
 }
 
 // A new file takes the rights of the one it replaces.
@@ -109,15 +158,27 @@ static bool report_folder(const char *path, const char *target, int code, error 
                    n ? (int)n : 1, n ? target : ".", strerror(code));
 }
 
+void outfile_tidy(const char *path)
+{
+    char beginning[256], *target = resolve_target(path, NULL);
+    if (!target) return;
+    temp_beginning(target, beginning, sizeof beginning);
+    remove_abandoned(target, beginning);
+    free(target);
+}
+
 bool outfile_begin(const char *path, outfile *out, error *e)
 {
     *out = OUTFILE_NONE;
     mode_t mode = 0;
+    char beginning[256];
     out->target = resolve_target(path, e);
     if (!out->target || !check_target(path, out->target, &mode, e)) goto fail;
+    outfile_tidy(path);
+    temp_beginning(out->target, beginning, sizeof beginning);
     for (int i = 0; i < ATTEMPTS && out->fd < 0; i++) {
         free(out->temp);
-        out->temp = temp_name(out->target, e);
+        out->temp = temp_name(out->target, beginning, e);
         if (!out->temp) goto fail;
         out->fd = open(out->temp, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (out->fd < 0 && errno != EEXIST) break;

@@ -3,6 +3,10 @@
 // The bytes go to a temporary file in the target's folder, named after host, process and a random number, so that two machines
 // that write into one shared folder never meet. Commit flushes it to disk and renames it onto the target; abort removes it and
 // leaves an older target as it was. A target that is a symbolic link keeps being one: what it points at is replaced.
+//
+// A process that is killed outright leaves its temporary file. The next one that begins (or tidies) the same target removes it,
+// if it is sure that nobody is writing there: the name says the host, the boot and PID namespace, and a process that there is no
+// more. What other machines left, or this one before it was last started, is theirs or unknown and stays.
 #ifndef SSDO_BASE_OUTFILE_H
 #define SSDO_BASE_OUTFILE_H
 
@@ -23,6 +27,9 @@ typedef struct outfile {
 // Creates the temporary file. A folder that is missing or cannot be written to is ERR_OUTPUT naming the folder; so is a target
 // that is not a regular file.
 bool outfile_begin(const char *path, outfile *out, error *e);
+
+// Removes what a killed process left beside the target, as beginning does: for a target that is done already.
+void outfile_tidy(const char *path);
 
 // Flush, close, rename. On failure the temporary file is removed. *out is spent either way.
 bool outfile_commit(outfile *out, error *e);

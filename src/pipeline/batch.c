@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
+#include "base/outfile.h"
 #include "cli/frames.h"
 #include "exr/write.h"
 #include "pipeline/inputs.h"
@@ -108,6 +109,7 @@ static void read_slot(batch *b, slot *s, int frame)
     if (o->missing_skip && !inputs_exist(&s->inputs)) {
         skip(s, "the input is missing");
     } else if (o->skip_existing && resume_is_done(b->j, s->output)) {
+        outfile_tidy(s->output);
         skip(s, "already done");
     } else {
         if (frame_read_files(b->j, s->inputs.list, s->inputs.count, &s->result, &s->error)) step(b, s);

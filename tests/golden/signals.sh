@@ -30,6 +30,31 @@ code=$?
 [ $code = 130 ] || die "SIGINT twice gave exit code $code"
 [ "$(ls -A "$dir")" = err ] || die "files are left: $(ls -A "$dir")"
 
+# Killed outright while it writes, a run leaves its hidden file; the next one on that target removes it, and nothing else that looks
+# like one: of a process that lives, of another machine, of another target, of another shape.
+dwell=$dir/dwell
+mkdir "$dwell"
+for i in 1 2 3 4 5 6 7 8; do
+    "$SSDO" -q samples/still.exr -o "$dwell/out.exr" --samples 1 --resolution half 2>"$dir/err" &
+    pid=$!
+    until left=$(ls -A "$dwell" | grep '^\.out\.exr\..*\.tmp$') || ! kill -0 $pid 2>/dev/null; do :; done
+    kill -KILL $pid 2>/dev/null
+    wait $pid 2>/dev/null
+    left=$(ls -A "$dwell" | grep '^\.out\.exr\..*\.tmp$') && break
+done
+[ -n "$left" ] || die "no run was caught while it wrote"
+case $left in .out.exr."$(hostname)-$pid-"*.tmp) ;; *) die "the hidden file does not name its process: $left" ;; esac
+rest=${left#.out.exr."$(hostname)-$pid"} # -TAG-RANDOM.tmp
+other=$(echo "$rest" | sed 's/^-\(.*\)-/-0123456789abcdef-/')
+for name in ".out.exr.$(hostname)-$$$rest" ".out.exr.elsewhere-$pid$rest" ".out.exr.$(hostname)-$pid$other" ".o.exr.$(hostname)-$pid$rest" ".out.exr.$(hostname)-$pid.tmp"; do
+    : >"$dwell/$name"
+    echo "$name" >>"$dir/kept"
+done
+echo out.exr >>"$dir/kept"
+"$SSDO" -q samples/still.exr -o "$dwell/out.exr" --samples 1 || die "the run after the kill"
+[ "$(ls -A "$dwell" | sort)" = "$(sort "$dir/kept")" ] || die "wanted $(sort "$dir/kept"), found $(ls -A "$dwell")"
+rm -r "$dwell"
+
 # One good frame, one that is missing.
 cp samples/still.exr "$dir/f.0001.exr"
 "$SSDO" -q "$dir/f.####.exr" -o "$dir/o.####.exr" --samples 4 --frames 1-2 --keep-going --progress openjd >"$dir/log" 2>/dev/null

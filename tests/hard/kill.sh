@@ -33,4 +33,5 @@ done
 left=$(find "$dir/out" -name '.*tmp' | wc -l)
 "$SSDO" $args -o "$dir/out/f.####.exr" --skip-existing || die "the run after the kills"
 for i in 1 2 3 4; do cmp "$dir/out/f.000$i.exr" "$dir/good/f.000$i.exr" || die "frame $i differs after the kills"; done
-echo "figure: killed $hit times at random moments of $span ms ($((k - hit)) runs were done before): 0 partial outputs, 0 lost inputs, $left hidden temporary files left, completed"
+[ -z "$(find "$dir/out" -name '.*tmp')" ] || die "the run after the kills leaves $(ls -A "$dir/out")"
+echo "figure: killed $hit times at random moments of $span ms ($((k - hit)) runs were done before): 0 partial outputs, 0 lost inputs, $left hidden temporary files, completed and tidied"
