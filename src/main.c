@@ -74,7 +74,7 @@ static bool run_frame(job *j, error *e)
 static bool run(const options *o, log_t *log, error *e)
 {
     job j;
-    bool ok = job_open(&j, o, log, e);
+    bool ok = job_open(&j, o, log, e) && preview_check(o, e);
     j.stop = &stop_signal;
     if (ok) ok = batch_is(o) ? batch_run(&j, e) : run_frame(&j, e);
     job_close(&j);

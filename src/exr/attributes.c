@@ -90,7 +90,8 @@ bool exr_attr_v2(const exr_file *file, int part, const char *name, double v[2])
 
 bool exr_attr_chromaticities(const exr_file *file, int part, double xy[8])
 {
-    const exr_attribute_t *a = find(file, part, "chromaticities");
+    static const char *const name = "chromaticities";
+    const exr_attribute_t *a = find(file, exr_attr_part(file, part, name), name);
     if (!a || a->type != EXR_ATTR_CHROMATICITIES) return false;
     const exr_attr_chromaticities_t *c = a->chromaticities;
     const double all[8] = {(double)c->red_x,  (double)c->red_y,  (double)c->green_x, (double)c->green_y,
@@ -221,18 +222,48 @@ static exr_result_t borrow(exr_context_t to, int part, const exr_attribute_t *so
     return EXR_ERR_SUCCESS;
 }
 
-exr_result_t exr_attr_copy_all(exr_context_t to, int part, const exr_file *from, int from_part, const exr_out_attr *ours,
-                               int our_count)
+bool exr_attr_source(const exr_out_part *p, int number, exr_source *out)
 {
-    int32_t count = 0;
-    exr_result_t rv = exr_get_attribute_count(from->core, from_part, &count);
-    for (int32_t i = 0; rv == EXR_ERR_SUCCESS && i < count; i++) {
-        const exr_attribute_t *a = NULL;
-        rv = exr_get_attribute_by_index(from->core, from_part, EXR_ATTR_LIST_FILE_ORDER, i, &a);
-        if (rv != EXR_ERR_SUCCESS) break;
-        // A second channel list under another name would say nothing about the new file, and the library cannot lend one.
-        if (exr_attr_structural(a->name) || a->type == EXR_ATTR_CHLIST || is_ours(a->name, ours, our_count)) continue;
-        rv = borrow(to, part, a);
+    int first = p->attributes_from != NULL;
+    if (number >= first + p->also_count) return false;
+    *out = first && number == 0 ? (exr_source){p->attributes_from, p->attributes_part} : p->also[number - first];
+    return true;
+}
+
+// An earlier source has the name.
+static bool is_taken(const exr_out_part *p, int before, const char *name)
+{
+    exr_source s;
+    for (int i = 0; i < before && exr_attr_source(p, i, &s); i++)
+        if (exr_attr_exists(s.file, s.part, name)) return true;
+    return false;
+}
+
+exr_result_t exr_attr_copy_all(exr_context_t to, int part, const exr_out_part *p)
+{
+    exr_result_t rv = EXR_ERR_SUCCESS;
+    exr_source s;
+    for (int n = 0; rv == EXR_ERR_SUCCESS && exr_attr_source(p, n, &s); n++) {
+        int32_t count = 0;
+        rv = exr_get_attribute_count(s.file->core, s.part, &count);
+        for (int32_t i = 0; rv == EXR_ERR_SUCCESS && i < count; i++) {
+            const exr_attribute_t *a = NULL;
+            rv = exr_get_attribute_by_index(s.file->core, s.part, EXR_ATTR_LIST_FILE_ORDER, i, &a);
+            if (rv != EXR_ERR_SUCCESS) break;
+            // A second channel list under another name would say nothing about the new file, and the library cannot lend one.
+            if (exr_attr_structural(a->name) || a->type == EXR_ATTR_CHLIST || is_taken(p, n, a->name) ||
+                is_ours(a->name, p->attributes, p->attribute_count))
+                continue;
+            rv = borrow(to, part, a);
+        }
     }
     return rv;
+}
+
+int exr_attr_part(const exr_file *file, int part, const char *name)
+{
+    if (exr_attr_exists(file, part, name)) return part;
+    for (int i = 0; i < file->part_count; i++)
+        if (strcmp(file->parts[i].view, file->parts[part].view) == 0 && exr_attr_exists(file, i, name)) return i;
+    return part;
 }

@@ -93,9 +93,12 @@ bool exr_attr_string(const exr_file *file, int part, const char *name, const cha
 bool exr_attr_float(const exr_file *file, int part, const char *name, double *value);       // int, float or double
 bool exr_attr_m44(const exr_file *file, int part, const char *name, double m[4][4]); // m44f or m44d, as stored: row vectors
 bool exr_attr_v2(const exr_file *file, int part, const char *name, double v[2]);     // v2f
-bool exr_attr_chromaticities(const exr_file *file, int part, double xy[8]);          // red, green, blue, white: x y each
+bool exr_attr_chromaticities(const exr_file *file, int part, double xy[8]); // red, green, blue, white: x y each; by exr_attr_part
 // Up to `most` strings of a string vector into values, valid until close; returns how many.
 int exr_attr_strings(const exr_file *file, int part, const char *name, const char **values, int most);
+// Where to look for what is said once for several parts (the camera, primaries): `part` if it has the attribute, else the first
+// of the same view that has it, else `part`.
+int exr_attr_part(const exr_file *file, int part, const char *name);
 bool exr_attr_exists(const exr_file *file, int part, const char *name);
 bool exr_attr_begins(const exr_file *file, int part, const char *beginning, size_t n); // any name with these n bytes in front
 

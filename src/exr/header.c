@@ -72,14 +72,16 @@ static bool is_long(const char *name) { return strlen(name) > EXR_SHORT_NAME; }
 
 static bool has_long_copied_name(const exr_out_part *p)
 {
-    int32_t count = 0;
-    if (!p->attributes_from || exr_get_attribute_count(p->attributes_from->core, p->attributes_part, &count)) return false;
-    for (int32_t i = 0; i < count; i++) {
-        const exr_attribute_t *a = NULL;
-        if (exr_get_attribute_by_index(p->attributes_from->core, p->attributes_part, EXR_ATTR_LIST_FILE_ORDER, i, &a) ==
-                EXR_ERR_SUCCESS &&
-            (is_long(a->name) || is_long(a->type_name)))
-            return true;
+    exr_source s;
+    for (int n = 0; exr_attr_source(p, n, &s); n++) {
+        int32_t count = 0;
+        if (exr_get_attribute_count(s.file->core, s.part, &count)) return false;
+        for (int32_t i = 0; i < count; i++) {
+            const exr_attribute_t *a = NULL;
+            if (exr_get_attribute_by_index(s.file->core, s.part, EXR_ATTR_LIST_FILE_ORDER, i, &a) == EXR_ERR_SUCCESS &&
+                (is_long(a->name) || is_long(a->type_name)))
+                return true;
+        }
     }
     return false;
 }
@@ -163,8 +165,7 @@ exr_result_t exr_put_header(exr_context_t core, const exr_out_part *parts, int c
         int index = -1;
         rv = exr_add_part(core, p->name && p->name[0] ? p->name : NULL, EXR_STORAGE_SCANLINE, &index);
         if (rv == EXR_ERR_SUCCESS) rv = put_required(core, index, p);
-        if (rv == EXR_ERR_SUCCESS && p->attributes_from)
-            rv = exr_attr_copy_all(core, index, p->attributes_from, p->attributes_part, p->attributes, p->attribute_count);
+        if (rv == EXR_ERR_SUCCESS) rv = exr_attr_copy_all(core, index, p);
         for (int a = 0; rv == EXR_ERR_SUCCESS && a < p->attribute_count; a++) rv = put_ours(core, index, &p->attributes[a]);
     }
     return rv == EXR_ERR_SUCCESS ? exr_write_header(core) : rv;

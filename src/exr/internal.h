@@ -55,10 +55,12 @@ void exr_merged_close(exr_file *file);
 // True for attributes that say how pixels are stored: they are the writer's and never copied.
 bool exr_attr_structural(const char *name);
 
-// Declares in part `part` of `to` a copy of every attribute of part `from_part` that is not structural and not in `ours`.
-// The values are borrowed: `from` must stay open until `to` is finished.
-exr_result_t exr_attr_copy_all(exr_context_t to, int part, const exr_file *from, int from_part, const exr_out_attr *ours,
-                               int our_count);
+// Declares in part `part` of `to` a copy of every attribute of the parts that p names that is not structural and not one of p's
+// own. The values are borrowed: those files must stay open until `to` is finished.
+exr_result_t exr_attr_copy_all(exr_context_t to, int part, const exr_out_part *p);
+
+// The number-th part that attributes are copied from, the first at 0; false beyond the last.
+bool exr_attr_source(const exr_out_part *p, int number, exr_source *out);
 
 // Checks what exr_write was given: names, windows, compression. ERR_OUTPUT names the part or channel that cannot be written.
 bool exr_check_parts(const char *path, const exr_out_part *parts, int count, error *e);

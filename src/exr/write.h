@@ -29,6 +29,12 @@ typedef struct exr_out_attr {
     int string_count;
 } exr_out_attr;
 
+// A part of an open file, numbered as in that very file (exr_part_file).
+typedef struct exr_source {
+    const exr_file *file;
+    int part;
+} exr_source;
+
 typedef struct exr_out_part {
     const char *name, *view; // NULL or "" for none; a multi-part file needs distinct names
     box2 data_window, display_window;
@@ -42,6 +48,8 @@ typedef struct exr_out_part {
     const exr_file
         *attributes_from; // every attribute of this part that is not structural is copied, NULL for none; exr_part_file
     int attributes_part;
+    const exr_source *also; // more parts to copy attributes from, in this order, as far as their names are new; borrowed
+    int also_count;
     const exr_out_attr *attributes; // ours; they replace copied ones of the same name
     int attribute_count;
 } exr_out_part;

@@ -71,6 +71,7 @@ bool camera_from_ndc(double m[4][4], box2 data, box2 display, const camera_point
 static bool number_of(const exr_file *file, int part, const char *name, double *value)
 {
     const char *text;
+    part = exr_attr_part(file, part, name);
     if (exr_attr_float(file, part, name, value)) return isfinite(*value);
     if (!exr_attr_string(file, part, name, &text)) return false;
     char *end;
@@ -113,7 +114,7 @@ static bool pose_from_angles(const exr_file *file, int part, const char *beginni
 static bool pose_from_matrix(const exr_file *file, int part, const header_camera *where, header_pose *out)
 {
     double m[4][4];
-    if (!where->pose || !exr_attr_m44(file, part, where->pose, m)) return false;
+    if (!where->pose || !exr_attr_m44(file, exr_attr_part(file, part, where->pose), where->pose, m)) return false;
     mat3 r = {{{m[0][0], m[0][1], m[0][2]}, {m[1][0], m[1][1], m[1][2]}, {m[2][0], m[2][1], m[2][2]}}};
     vec3 t = v3(m[3][0], m[3][1], m[3][2]), inverse = v3_scale(m3_apply(r, t), -1.0);
     out->axes = where->world_to_camera ? r : m3_transpose(r);

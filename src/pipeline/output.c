@@ -29,6 +29,8 @@ typedef struct book {
     int view_count;
     exr_out_part *parts;
     int part_count;
+    exr_source *sources; // of attributes, of a merged part; as many as the file has parts for each view
+    int source_count;
     exr_out_part *shared; // of views that names tell: the part that has the first one's layers, and so the others'
 } book;
 
@@ -319,6 +321,20 @@ static void append_view(book *k, assembly *a, const frame_result *r)
     k->shared->attribute_count = first->attr_count;
 }
 
+// What the view's other parts say besides: cryptomatte manifests, the camera, filters.
+static void add_sources(book *k, exr_out_part *part, const frame_result *r)
+{
+    exr_source *first = k->sources + k->source_count;
+    for (int i = 0; i < r->file->part_count; i++) {
+        int index = i;
+        const exr_file *from = exr_part_file(r->file, &index);
+        if (i != r->resolution.main_part && view_has(&r->file->parts[i], r->view))
+            k->sources[k->source_count++] = (exr_source){from, index};
+    }
+    part->also = first;
+    part->also_count = (int)(k->sources + k->source_count - first);
+}
+
 // The view's parts and our layers as one.
 static bool merge_parts(book *k, assembly *a, const job *j, const frame_result *r, error *e)
 {
@@ -330,6 +346,7 @@ static bool merge_parts(book *k, assembly *a, const job *j, const frame_result *
     if (view) only->view = view;
     if (view && !only->name[0]) only->name = view;
     if (!room(only, total_channels(f) + MAX_OURS * view_count(r), e)) return false;
+    add_sources(k, only, r);
     for (int i = 0; !j->o->keep_none && i < f->part_count; i++)
         if (view_has(&f->parts[i], r->view))
             only->channel_count += keep_channels(j, r, &f->parts[i], true, only->channels + only->channel_count);
@@ -415,12 +432,14 @@ static void free_book(book *k)
     }
     for (int i = 0; i < k->part_count; i++) free(k->parts[i].channels);
     free(k->parts);
+    free(k->sources);
 }
 
 bool output_write(const job *j, frame_result *r, const char *path, error *e)
 {
     book k = {.parts = mem_zero((size_t)r->file->part_count + VIEWS_MAX, sizeof *k.parts, e)};
-    bool ok = k.parts != NULL;
+    k.sources = k.parts ? mem_zero((size_t)r->file->part_count * (size_t)view_count(r), sizeof *k.sources, e) : NULL;
+    bool ok = k.sources != NULL;
     bool others_first = !is_filtered(&r->file->parts[0], r); // the default view stays the first
     if (ok && others_first) ok = keep_others(&k, j, r, e);
     for (frame_result *v = r; ok && v; v = v->next_view) ok = add_view(&k, j, v, e);

@@ -114,12 +114,20 @@ static uint8_t shade(layer_id l, const dot *d, int k)
     return share(d->v[0]);
 }
 
+static bool has_display(const options *o) { return o->display || o->view || colour_config(o->ocio); }
+
+bool preview_check(const options *o, error *e)
+{
+    float grey[3] = {0.18f, 0.18f, 0.18f};
+    return !o->preview || !has_display(o) || colour_to_display(o->ocio, o->display, o->view, grey, 1, e);
+}
+
 // From scene-linear light to codes, in place: by the config's view, else by sRGB's curve after its primaries.
 static bool develop(const options *o, const frame_result *r, float *rgb, size_t n, error *e)
 {
     double xy[8];
     mat3 m;
-    if (o->display || o->view || colour_config(o->ocio)) return colour_to_display(o->ocio, o->display, o->view, rgb, n, e);
+    if (has_display(o)) return colour_to_display(o->ocio, o->display, o->view, rgb, n, e);
     bool other = exr_attr_chromaticities(r->file, r->resolution.main_part, xy) && !primaries_equal(xy, primaries_rec709) &&
                  primaries_between(xy, primaries_rec709, &m);
     for (size_t i = 0; i < n; i++) {

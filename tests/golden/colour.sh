@@ -16,4 +16,17 @@ oiiotool --fail 0.004 --hardfail 0.004 --diff "$dir/none.png" "$dir/standard.png
 oiiotool --fail 0.02 --diff "$dir/standard.png" "$dir/filmic.png" >/dev/null && die "Filmic changes nothing"
 "$SSDO" -q samples/still.exr -o "$dir/o.exr" --samples 4 --layers composite --preview "$dir/x.png" --ocio $config --view Nice 2>"$dir/err" && die "taken"
 grep -q 'Filmic' "$dir/err" && [ "$(wc -l <"$dir/err")" = 1 ] || die "$(cat "$dir/err")"
+
+# The config of $OCIO, a display of several; mistakes are found before any frame is filtered.
+export OCIO=$config
+look default ""
+cmp "$dir/default.png" "$dir/standard.png" || die "\$OCIO gives another picture than --ocio"
+look xyz "--display XYZ --view Standard"
+oiiotool --fail 0.02 --diff "$dir/standard.png" "$dir/xyz.png" >/dev/null && die "another display changes nothing"
+rm "$dir"/*
+"$SSDO" -q samples/still.exr -o "$dir/o.exr" --preview "$dir/x.png" --display LCD 2>"$dir/err" && die "taken"
+grep -q "no display 'LCD'; it has sRGB, XYZ, None" "$dir/err" && [ "$(ls "$dir")" = err ] || die "$(ls "$dir"; cat "$dir/err")"
+unset OCIO
+"$SSDO" -q samples/still.exr -o "$dir/o.exr" --preview "$dir/x.png" --view Filmic 2>"$dir/err" && die "taken"
+grep -q 'name one with --ocio' "$dir/err" && [ "$(ls "$dir")" = err ] || die "$(ls "$dir"; cat "$dir/err")"
 exit 0

@@ -24,6 +24,17 @@ oiiotool --diff "$dir/want.exr" "$dir/got.exr" >"$dir/diff" || die "other pixels
     "$dir/sh_010_beauty.####.exr" -o "$dir/seq.####.exr" $common || die "the sequence"
 oiiotool --diff "$dir/want.exr" "$dir/seq.0002.exr" >/dev/null || die "the sequence's pixels"
 
+# What only one file's header says comes through, a manifest and the camera; where two differ, the position's (or depth's) counts.
+mkdir "$dir/head"
+oiiotool "$dir/sh_010_Z.0001.exr" --attrib who depth -o "$dir/head/s_Z.exr" >/dev/null 2>&1
+oiiotool "$dir/sh_010_beauty.0001.exr" --attrib who beauty --attrib cryptomatte/3ae39a5/manifest names \
+    --attrib:type=matrix worldToNDC "2,0,0,0,0,3.5555556,0,0,0,0,1,1,0,0,0,0" -o "$dir/head/s_beauty.exr" >/dev/null 2>&1
+"$SSDO" -q "$dir/head/s_beauty.exr" "$dir/head/s_Z.exr" -o "$dir/head.exr" --layers occlusion --samples 4 || die "a camera in the beauty's header"
+exrheader "$dir/head.exr" >"$dir/header"
+for line in '^cryptomatte/3ae39a5/manifest .*"names"' '^who .*"depth"' '^ssdo/camera .*source header' '^worldToNDC '; do
+    grep -q "$line" "$dir/header" || die "no $line in: $(cat "$dir/header")"
+done
+
 # DWA goes through another reader, which knows the channels by their stored names.
 oiiotool "$dir/sh_010_albedo.0001.exr" --compression dwaa -o "$dir/sh_010_albedo.0001.exr" >/dev/null 2>&1
 "$SSDO" -q "$dir"/sh_010_*.0001.exr -o "$dir/dwa.exr" $common || die "a DWA pass among the files"
