@@ -174,8 +174,8 @@ bool outfile_begin(const char *path, outfile *out, error *e)
     char beginning[256];
     out->target = resolve_target(path, e);
     if (!out->target || !check_target(path, out->target, &mode, e)) goto fail;
-    outfile_tidy(path);
     temp_beginning(out->target, beginning, sizeof beginning);
+    remove_abandoned(out->target, beginning);
     for (int i = 0; i < ATTEMPTS && out->fd < 0; i++) {
         free(out->temp);
         out->temp = temp_name(out->target, beginning, e);
