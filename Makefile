@@ -18,10 +18,10 @@ endif
 # Debian packages: what the build needs, what `make check` needs on top.
 DEPS_BUILD := gcc g++ pkg-config libopenexr-dev libopenimageio-dev libopencolorio-dev libembree-dev libegl-dev libegl-mesa0 libgl1-mesa-dri \
               libepoxy-dev libdeflate-dev libjson-c-dev
-DEPS_CHECK := libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender man-db
+DEPS_CHECK := libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender man-db parallel
 DEPS_BENCH := gnuplot-nox
 DEPS_HOSTS := blender openimageio-tools openexr imagemagick libmagickcore-6.q16-6-extra
-DEPS_FARM  := blender slurm-wlm munge parallel python3-yaml
+DEPS_FARM  := blender slurm-wlm munge parallel python3-yaml openimageio-tools
 
 PKGS       := OpenEXR epoxy egl libdeflate json-c
 # Looked up only when something is compiled, so that `make deps` works on a machine that has none of it.

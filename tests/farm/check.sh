@@ -60,10 +60,24 @@ left=$(ls lit.*.exr | wc -l)
 job=$(submit) || die "sbatch"
 finished
 [ "$(cat ssdo-filter."${job}"_*.log | grep -c 'skipped, already done')" = "$left" ] || die "done frames were made again: $(cat ./ssdo-filter."${job}"_*.log)"
-slurm_stop
 cd "$root" || exit 1
 same "$work/slurm"
 echo "ok      Slurm array: cancelled with $left of $frames frames, completed by the same line, the same bytes"
+
+# The README's farm commands as they stand, in a folder that looks like a clone.
+sh tests/readme.sh slurm >"$temp/slurm.commands" && sh tests/readme.sh openjd.py >"$temp/openjd.commands"
+mkdir "$temp/clone" "$temp/bin" && ln -s "$root/samples" "$root/tests" "$temp/clone" && ln -s "$SSDO" "$temp/bin"
+PATH=$temp/bin:$PATH
+cd "$temp/clone" || exit 1
+sh samples/shot.sh try && ssdo-filter -q 'try/shot.####.exr' -o 'try/lit.####.exr' --env samples/sky_soft.exr || die "samples/shot.sh"
+sh -e "$temp/slurm.commands" >"$temp/log" 2>&1 || die "$(cat "$temp/slurm.commands"): $(cat "$temp/log")"
+finished
+for i in $(seq -w $frames); do cmp try/lit.00$i.exr try/slurm.00$i.exr || die "the README's sbatch line makes another frame $i: $(tail -n 3 ssdo-filter.*.log)"; done
+slurm_stop
+sh -e "$temp/openjd.commands" >"$temp/log" 2>&1 || die "$(cat "$temp/openjd.commands"): $(cat "$temp/log")"
+[ "$(ls try | grep -c '^jd\.00.*exr$')" = $frames ] && grep -qx "$(sed -n 's/^#=> //p' "$temp/openjd.commands")" "$temp/log" || die "the README's openjd.py line prints: $(cat "$temp/log")"
+cd "$root" || exit 1
+echo "ok      README: its farm commands, as typed"
 
 # Open Job Description, by openjd-cli where it is installed. A copy of the template takes the option, as its comment says.
 awk -v o="$options" '{ print } /"openjd"$/ { n = split(o, w, " "); for (i = 1; i <= n; i++) print "            - \"" w[i] "\"" }' \
