@@ -163,7 +163,7 @@ check-hosts:
 	@sh tests/hosts/check.sh $(BUILD)
 
 # Error against time of every method (tests/bench/bench.h): a table, a plot, all figures as CSV, in $(BUILD)/bench.
-BENCH     := bench cache embree generated plot references rows run scenes summary table yardstick
+BENCH     := bench cache embree generated middle plot references rows run scenes summary table yardstick
 BENCH_OBJ := $(BENCH:%=$(BUILD)/tests/bench/%.o)
 UNSEEN    ?= 101# the variant of the scenes that bench-unseen renders
 UNSEEN_SPP ?= 48
@@ -183,14 +183,16 @@ bench-paper: deps-bench
 .PHONY: bench bench-unseen bench-readme mutate truth
 bench: deps-bench
 	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench-program
-	@$(BUILD)/bench-program --out $(BUILD)/bench --cache $(BENCH_CACHE)/references
+	@sh tests/bench/meshes.sh $(BENCH_CACHE)/meshes 0
+	@$(BUILD)/bench-program --out $(BUILD)/bench --cache $(BENCH_CACHE)/references --meshes $(BENCH_CACHE)/meshes
 
 # Scenes that nothing was tuned on: rendered once for each UNSEEN.
 bench-unseen: deps-bench
 	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench-program
 	@$(MAKE) --no-print-directory $(BENCH_CACHE)/unseen/$(UNSEEN)/rendered
+	@sh tests/bench/meshes.sh $(BENCH_CACHE)/unseen/$(UNSEEN) $(UNSEEN)
 	@$(BUILD)/bench-program --rendered-only --samples $(BENCH_CACHE)/unseen/$(UNSEEN) --out $(BUILD)/bench-unseen \
-	    --cache $(BENCH_CACHE)/references --title 'Bench of unseen scenes, variant $(UNSEEN)' --command 'make bench-unseen UNSEEN=$(UNSEEN)'
+	    --meshes $(BENCH_CACHE)/unseen/$(UNSEEN) --cache $(BENCH_CACHE)/references --title 'Bench of unseen scenes, variant $(UNSEEN)' --command 'make bench-unseen UNSEEN=$(UNSEEN)'
 
 $(BENCH_CACHE)/unseen/%/rendered:
 	@mkdir -p $(@D)

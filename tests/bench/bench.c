@@ -1,6 +1,6 @@
 // make bench: see bench.h.
 //   bench [--samples DIR] [--out DIR] [--cache DIR] [--rounds N] [--title TEXT] [--command TEXT] [--rendered-only]
-//   [--generated-only]
+//   [--generated-only] [--meshes DIR] [--only WORD: rows whose name holds it, for a quick look]
 #include <errno.h>
 #include <getopt.h>
 #include <locale.h>
@@ -14,22 +14,31 @@
 #include "bench.h"
 
 typedef struct arguments {
-    const char *samples, *out, *cache, *title, *command;
+    const char *samples, *out, *cache, *meshes, *only, *title, *command;
     int rounds;
     bool rendered, generated;
 } arguments;
 
 static bool parse(int argc, char **argv, arguments *a)
 {
-    static const struct option table[] = {
-        {"samples", 1, NULL, 's'}, {"out", 1, NULL, 'o'},     {"cache", 1, NULL, 'c'},         {"rounds", 1, NULL, 'r'},
-        {"title", 1, NULL, 't'},   {"command", 1, NULL, 'm'}, {"rendered-only", 0, NULL, 'R'}, {"generated-only", 0, NULL, 'G'},
-        {NULL, 0, NULL, 0}};
-    *a = (arguments){"samples", "build/bench", "build/bench-cache", "Bench", "make bench", 3, true, true};
+    static const struct option table[] = {{"samples", 1, NULL, 's'},
+                                          {"out", 1, NULL, 'o'},
+                                          {"cache", 1, NULL, 'c'},
+                                          {"rounds", 1, NULL, 'r'},
+                                          {"title", 1, NULL, 't'},
+                                          {"command", 1, NULL, 'm'},
+                                          {"rendered-only", 0, NULL, 'R'},
+                                          {"generated-only", 0, NULL, 'G'},
+                                          {"meshes", 1, NULL, 'e'},
+                                          {"only", 1, NULL, 'w'},
+                                          {NULL, 0, NULL, 0}};
+    *a = (arguments){"samples", "build/bench", "build/bench-cache", NULL, NULL, "Bench", "make bench", 3, true, true};
     for (int c; (c = getopt_long(argc, argv, "", table, NULL)) != -1;) {
         if (c == 's') a->samples = optarg;
         if (c == 'o') a->out = optarg;
         if (c == 'c') a->cache = optarg;
+        if (c == 'e') a->meshes = optarg;
+        if (c == 'w') a->only = optarg;
         if (c == 't') a->title = optarg;
         if (c == 'm') a->command = optarg;
         if (c == 'r') a->rounds = atoi(optarg);
@@ -68,7 +77,7 @@ static int open_scenes(const arguments *a, rig *r, bench_scene *list, error *e)
 {
     char sky[512] = "";
     int n = 0;
-    if (a->rendered && (n = bench_samples(a->samples, r, list, BENCH_SCENES, e)) == 0) return 0;
+    if (a->rendered && (n = bench_samples(a->samples, a->meshes, r, list, BENCH_SCENES, e)) == 0) return 0;
     if (!a->generated) return n;
     snprintf(sky, sizeof sky, "%s/sky_soft.exr", a->samples);
     int more = bench_generated(sky, a->cache, r, list + n, BENCH_SCENES - n, e);
@@ -89,7 +98,7 @@ static bool warm_up(rig *r, const bench_results *b, const bench_scene *s, error 
 {
     for (int i = 0; i < b->row_count; i++) {
         bench_row row = b->rows[i];
-        if (row.kind != ROW_METHOD || (row.samples != 8 && !row.standard)) continue;
+        if (row.kind != ROW_METHOD || row.once || !bench_runs(&row, s) || (row.samples != 8 && !row.standard)) continue;
         row.samples = 8;
         if (!run_once(r, s, &row, bench_layers(&row), NULL, NULL, e) ||
             !run_once(r, s, &row, 1 << LAYER_OCCLUSION, NULL, NULL, e))
@@ -109,13 +118,14 @@ static bool tells_both(const bench_row *row)
 static bool do_row(rig *r, const bench_scene *s, const bench_row *row, bench_cell *cell, int round, const char *cache, error *e)
 {
     const unsigned occlusion = 1u << LAYER_OCCLUSION;
+    if (!bench_runs(row, s)) return true;
     if (round == 0) {
         if (!bench_measure(r, s, row, cache, cell, e)) return false;
         if (row->kind != ROW_METHOD) return true;
         cell->rounds = cell->all_rounds = 1;
         return s->generated || tells_both(row) || run_once(r, s, row, occlusion, &cell->direct[0], NULL, e);
     }
-    if (row->kind != ROW_METHOD || row->samples > BENCH_LONG) return true;
+    if (row->kind != ROW_METHOD || row->once || row->samples > BENCH_LONG) return true;
     int i = cell->rounds++;
     cell->round[i] = round;
     if (tells_both(row) || row->standard) {
@@ -224,6 +234,14 @@ static int rendered_count(const bench_scene *list, int n)
     return rendered ? rendered : n;
 }
 
+static int rows_with(bench_row *rows, int n, const char *word)
+{
+    int kept = 0;
+    for (int i = 0; i < n; i++)
+        if (!word || strstr(rows[i].name, word)) rows[kept++] = rows[i];
+    return kept;
+}
+
 static bool bench(const arguments *a, error *e)
 {
     static rig r;
@@ -242,7 +260,7 @@ static bool bench(const arguments *a, error *e)
     bench_cell *cells = NULL;
     bool ok = b.scene_count > 0 && bench_fit_alchemy(&r, scenes, b.timed_count, &b.alchemy_scale, &b.alchemy_contrast, e);
     if (ok) {
-        b.row_count = bench_rows(rows, BENCH_ROWS, b.alchemy_scale, b.alchemy_contrast);
+        b.row_count = rows_with(rows, bench_rows(rows, BENCH_ROWS, b.alchemy_scale, b.alchemy_contrast), a->only);
         b.cells = cells = mem_zero((size_t)b.row_count * (size_t)b.scene_count, sizeof *cells, e);
         ok = cells && prepare_references(&b, a->cache, start, e);
     }

@@ -27,15 +27,22 @@ typedef struct bench_scene {
     layer layer; // reference A
     pixel *pixels;
     int pixel_count;
+    char mesh[256];             // the scene's own surfaces, an OBJ file; empty: none
+    struct bench_scene *middle; // the middle third of the picture, for the rows of --proxies; NULL: none
+    proxy_set proxies;          // what stands beside that
 } bench_scene;
 
 // The rendered samples of a folder (samples/render.py), and the scenes that C makes; each returns how many, 0 with the error
 // filled. `cache` is the folder for truth that takes long; `sky` a map for the light of the generated scenes.
-int bench_samples(const char *dir, rig *r, bench_scene *list, int max, error *e);
+// `meshes` holds a NAME.obj for each rendered scene; NULL or without the file: rows that need it stay empty.
+int bench_samples(const char *dir, const char *meshes, rig *r, bench_scene *list, int max, error *e);
 int bench_generated(const char *sky, const char *cache, rig *r, bench_scene *list, int max, error *e);
 void bench_scene_free(bench_scene *b);
 // Loads a sky into the scene and onto the GPU.
 bool bench_light(bench_scene *b, const char *path, double rotate, rig *r, error *e);
+// The middle third, if DIR/proxies/NAME.json says what stands beside it (middle.c).
+bool bench_middle(bench_scene *b, const char *dir, error *e);
+void bench_middle_free(bench_scene *b);
 // The layer and the stratified pixels of reference A; the gbuffer must be there.
 bool bench_prepare(bench_scene *b, error *e);
 
@@ -61,6 +68,9 @@ typedef struct bench_row {
     int sh_bands;           // of s3ho; 0 as 2
     const char *bounce;     // NULL: the method's own
     int lights;             // of the bounce vpl
+    bool middle, proxies;   // only the middle third of the picture; with spheres for what stands beside it
+    int trace;              // raytrace: its back end
+    bool once;              // timed in the first round only
     bool standard;          // the method's own defaults: a row of the short table
 } bench_row;
 
@@ -83,6 +93,8 @@ typedef struct bench_cell { // a row on a scene
     bench_time direct[BENCH_ROUNDS], all[BENCH_ROUNDS]; // occlusion alone; every layer the method makes (0: not timed)
 } bench_cell;
 
+// Whether the scene has what the row needs: a mesh, a middle.
+bool bench_runs(const bench_row *row, const bench_scene *b);
 pass_settings bench_settings(const bench_row *row, const bench_scene *b);
 // The layers a row makes: with more than BENCH_LONG samples occlusion alone.
 unsigned bench_layers(const bench_row *row);

@@ -60,7 +60,7 @@ static bool compare(const char *name, error *e)
     static rig r;
     static bench_scene scenes[BENCH_SCENES];
     if (!rig_open(&r, NULL, e)) return false;
-    int n = bench_samples("samples", &r, scenes, BENCH_SCENES, e), at = 0;
+    int n = bench_samples("samples", NULL, &r, scenes, BENCH_SCENES, e), at = 0;
     for (int i = 0; i < n; i++)
         if (strcmp(scenes[i].s.name, name) == 0) at = i;
     kind kinds[] = {

@@ -11,6 +11,7 @@ typedef enum panel { PANEL_OCCLUSION, PANEL_RADIANCE, PANEL_INDIRECT, PANELS } p
 static const char *const colours[] = {"#d62728", "#1f77b4", "#ff7f0e", "#8c564b", "#7f7f7f",
                                       "#17becf", "#2ca02c", "#9467bd", "#bcbd22", "#e377c2"};
 enum { COLOURS = sizeof colours / sizeof *colours };
+static const char RAYTRACE_COLOUR[] = "#000000";
 
 static double error_of(const bench_summary *s, panel p)
 {
@@ -24,7 +25,10 @@ static bool drawn(const bench_row *row, const bench_summary *s, panel p)
 }
 
 // One colour a method; its variants share it. Rows with blur are a curve of their own.
-static const char *colour_of(const bench_row *row) { return colours[(row->m - methods) % COLOURS]; }
+static const char *colour_of(const method *m)
+{
+    return m == &method_raytrace ? RAYTRACE_COLOUR : colours[(m - methods) % COLOURS];
+}
 static bool is_variant(const bench_row *row) { return strcmp(row->name, row->m->name) != 0; }
 static bool same_curve(const bench_row *a, const bench_row *b)
 {
@@ -103,7 +107,7 @@ static void plot_panel(FILE *f, const bench_results *r, const bench_summary *s, 
     for (int i = 0; i < r->row_count; i++)
         if (starts_curve(r, s, i, p))
             fprintf(f, ", $c%d_%d using 1:2 smooth unique with linespoints lw %g pt %d ps 0.7 lc rgb '%s' dt %d notitle", (int)p,
-                    i, is_variant(&r->rows[i]) ? 0.8 : 1.8, r->rows[i].blur ? 4 : 7, colour_of(&r->rows[i]),
+                    i, is_variant(&r->rows[i]) ? 0.8 : 1.8, r->rows[i].blur ? 4 : 7, colour_of(r->rows[i].m),
                     r->rows[i].blur           ? 2
                     : is_variant(&r->rows[i]) ? 3
                                               : 1);
@@ -114,19 +118,21 @@ static void plot_panel(FILE *f, const bench_results *r, const bench_summary *s, 
 }
 
 // A legend for all panels: an empty plot whose key lies along the bottom.
+static void legend_of(FILE *f, const bench_results *r, const method *m)
+{
+    bool used = false;
+    for (int i = 0; i < r->row_count; i++) used |= r->rows[i].m == m;
+    if (used) fprintf(f, "NaN with linespoints lw 1.8 pt 7 ps 0.7 lc rgb '%s' title '%s', ", colour_of(m), m->name);
+}
+
 static void legend(FILE *f, const bench_results *r)
 {
     fprintf(f,
             "unset label\nset lmargin at screen 0.05\nset rmargin at screen 0.985\nset title ''\nset xlabel ''\nset ylabel ''\n"
             "unset tics\nunset border\nset key at screen 0.5, 0.10 center center horizontal maxrows 2 samplen 2 width 2\n"
             "set xrange [1:2]\nset yrange [1:2]\nplot ");
-    for (const method *m = methods; m->name; m++) {
-        bool used = false;
-        for (int i = 0; i < r->row_count; i++) used |= r->rows[i].m == m;
-        if (used)
-            fprintf(f, "NaN with linespoints lw 1.8 pt 7 ps 0.7 lc rgb '%s' title '%s', ", colours[(m - methods) % COLOURS],
-                    m->name);
-    }
+    for (const method *m = methods; m->name; m++) legend_of(f, r, m);
+    legend_of(f, r, &method_raytrace);
     fprintf(f, "NaN with linespoints lw 1.8 pt 4 ps 0.7 dt 2 lc rgb '#000000' title 'with its blur', "
                "NaN with linespoints lw 0.8 pt 7 ps 0.7 dt 3 lc rgb '#000000' title 'variant of a method', "
                "NaN with points pt 6 ps 1.5 lc rgb '#000000' title 'Pareto front'\n");

@@ -4,6 +4,7 @@
 
 #include "base/mem.h"
 #include "bench.h"
+#include "passes/trace.h"
 
 static const int budgets[] = {8, 16, 32, 64, 128, 256};
 enum { BUDGETS = sizeof budgets / sizeof *budgets, CONVERGED = 1024 };
@@ -16,7 +17,7 @@ typedef struct variant {
     bool no_planes;
     const char *bounce;
     int lights;
-    bool defaults, converged;
+    bool defaults, converged, middle, proxies;
 } variant;
 
 static const variant variants[] = {
@@ -25,6 +26,8 @@ static const variant variants[] = {
     {.method = "arc", .suffix = ", bounce vpl 64", .bounce = "vpl", .lights = 64, .defaults = true},
     {.method = "arc", .suffix = ", bounce vpl 256", .bounce = "vpl", .lights = 256, .defaults = true},
     {.method = "arc", .suffix = ", bounce vpl 1024", .bounce = "vpl", .lights = 1024, .defaults = true},
+    {.method = "arc", .suffix = ", middle third alone", .middle = true, .defaults = true},
+    {.method = "arc", .suffix = ", middle third, --proxies", .middle = true, .proxies = true, .defaults = true},
 };
 
 // Methods whose error with (nearly) endless samples issue 4 compares.
@@ -47,6 +50,7 @@ static bench_row variant_row(const method *m, const variant *v, int samples, int
     if (v->thickness > 0.0) r.thickness = v->thickness;
     r.no_planes = v->no_planes;
     r.bounce = v->bounce, r.lights = v->lights;
+    r.middle = v->middle, r.proxies = v->proxies;
     r.standard = blur > 0;
     return r;
 }
@@ -100,6 +104,22 @@ static int method_rows(const method *m, bench_row *rows)
     return n;
 }
 
+// The reference, which costs what it costs: timed once.
+static int raytrace_rows(bench_row *rows)
+{
+    static const struct {
+        const char *suffix;
+        int samples, trace;
+    } list[] = {{"", 16, TRACE_EMBREE}, {"", 64, TRACE_EMBREE}, {", --trace gpu", 8, TRACE_GPU}};
+    int n = 0;
+    for (; n < 3; n++) {
+        rows[n] = row_of(&method_raytrace, list[n].suffix, list[n].samples, 0);
+        rows[n].trace = list[n].trace;
+        rows[n].once = rows[n].standard = true;
+    }
+    return n;
+}
+
 int bench_rows(bench_row *rows, int max, double scale, double contrast)
 {
     enum { MOST = 40 }; // of one method
@@ -114,7 +134,7 @@ int bench_rows(bench_row *rows, int max, double scale, double contrast)
             rows[n++] = r;
         }
     }
-    return n;
+    return n + raytrace_rows(rows + n);
 }
 
 // ---- Alchemy's best look

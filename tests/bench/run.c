@@ -4,6 +4,13 @@
 #include "base/mem.h"
 #include "bench.h"
 #include "light/sh.h"
+#include "passes/trace.h"
+
+bool bench_runs(const bench_row *row, const bench_scene *b)
+{
+    if (row->kind != ROW_METHOD) return true;
+    return (!row->m->needs_mesh || b->mesh[0]) && (!row->middle || b->middle);
+}
 
 pass_settings bench_settings(const bench_row *row, const bench_scene *b)
 {
@@ -21,6 +28,9 @@ pass_settings bench_settings(const bench_row *row, const bench_scene *b)
     set.sh_bands = row->sh_bands;
     set.scale = row->scale;
     set.contrast = row->contrast;
+    set.mesh = b->mesh;
+    set.mesh_axes = -1;
+    set.trace = row->trace;
     return set;
 }
 
@@ -33,13 +43,31 @@ unsigned bench_layers(const bench_row *row)
     return 1u << LAYER_OCCLUSION | 1u << LAYER_RADIANCE | (bounce_of(row) ? 1u << LAYER_INDIRECT : 0u);
 }
 
-static void take_time(const frame_result *f, const char *without, bench_time *t)
+// `share` of the scene's pixels were in the frame.
+static void take_time(const frame_result *f, const char *without, double share, bench_time *t)
 {
     if (!t) return;
     *t = (bench_time){f->cpu_ms[STAGE_PASSES], f->wall_ms[STAGE_PASSES]};
     for (int i = 0; i < f->timing_count; i++)
         if (strcmp(f->timings[i].name, "upload") == 0 || strcmp(f->timings[i].name, without) == 0)
             t->cpu -= f->timings[i].cpu_ms, t->wall -= f->timings[i].wall_ms;
+    t->cpu /= share, t->wall /= share;
+}
+
+// Reads the mesh, builds what traces it and compiles, which a batch does once: runs of one sample that nobody times.
+static bool open_mesh(rig *r, const bench_scene *b, const bench_row *row, pass_settings set, error *e)
+{
+    const trace_scene *s = &r->job.trace;
+    const unsigned layers[] = {bench_layers(row), 1u << LAYER_OCCLUSION};
+    if (s->path && strcmp(s->path, b->mesh) == 0 && (s->cpu != NULL) == (row->trace != TRACE_GPU)) return true;
+    trace_scene_close(&r->job.trace);
+    set.samples = 1;
+    for (int i = 0; i < 2; i++) {
+        frame_result ignored;
+        if (!rig_run(r, &b->gb, row->m, &set, layers[i], &ignored, e)) return false;
+        rig_free_result(&ignored);
+    }
+    return true;
 }
 
 // The rig's environment is the scene's for the time of a run; the scene keeps owning it.
@@ -47,17 +75,21 @@ bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned laye
                bench_time *all, error *e)
 {
     pass_settings set = bench_settings(row, b);
+    double share = row->middle ? (double)b->middle->gb.width / b->gb.width : 1.0;
+    r->proxies = row->proxies ? b->proxies : (proxy_set){0};
+    if (row->middle) b = b->middle;
     r->job.env = b->env;
     r->job.env_image = b->env_image;
     r->job.env_loaded = true;
     r->options.bounce = bounce_of(row);
     r->options.report = "timed"; // a report makes the passes wait and take their times
-    bool ok = rig_run(r, &b->gb, row->m, &set, layers, out, e);
+    bool ok = (!row->m->needs_mesh || open_mesh(r, b, row, set, e)) && rig_run(r, &b->gb, row->m, &set, layers, out, e);
     r->job.env_loaded = false;
     r->job.env_image = (gpu_image){0};
+    out->proxies = (proxy_set){0}; // the scene's
     if (!ok) return false;
-    take_time(out, "irradiance", direct);
-    take_time(out, "", all);
+    take_time(out, "irradiance", share, direct);
+    take_time(out, "", share, all);
     return true;
 }
 
@@ -147,6 +179,7 @@ static double light_error(const bench_scene *b, const float *light, const double
 static bool compare(const bench_scene *b, const bench_row *row, const frame_result *f, const char *cache, bench_cell *cell,
                     error *e)
 {
+    if (row->middle) return true; // the references' pixels are the whole picture's
     double *expected = bench_reference(b, row, cache, e), square = 0.0, sum = 0.0;
     for (int i = 0; expected && i < b->pixel_count; i++) {
         double d = (double)*at(b, f->layers[LAYER_OCCLUSION], 1, b->pixels[i]) - expected[4 * i];
@@ -172,7 +205,7 @@ bool bench_measure(rig *r, const bench_scene *b, const bench_row *row, const cha
 {
     if (row->kind != ROW_METHOD) return measure_oracle(b, row, cell, e);
     frame_result f;
-    const sample *s = &b->s;
+    const sample *s = row->middle ? &b->middle->s : &b->s;
     unsigned layers = bench_layers(row);
     if (!bench_run(r, b, row, layers, &f, &cell->direct[0], &cell->all[0], e)) return false;
     cell->has_occlusion = true;

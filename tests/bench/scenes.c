@@ -1,5 +1,6 @@
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include "base/mem.h"
 #include "base/threads.h"
@@ -36,7 +37,14 @@ static bool build_gbuffer(const char *path, gbuffer *out, log_t *log, error *e)
     return ok;
 }
 
-int bench_samples(const char *dir, rig *r, bench_scene *list, int max, error *e)
+static void find_mesh(bench_scene *b, const char *meshes)
+{
+    if (!meshes) return;
+    snprintf(b->mesh, sizeof b->mesh, "%s/%s.obj", meshes, b->s.name);
+    if (access(b->mesh, R_OK) != 0) b->mesh[0] = 0;
+}
+
+int bench_samples(const char *dir, const char *meshes, rig *r, bench_scene *list, int max, error *e)
 {
     sample found[SAMPLE_MAX];
     int n = samples_list(dir, found, max < SAMPLE_MAX ? max : SAMPLE_MAX, e), kept = 0;
@@ -45,8 +53,9 @@ int bench_samples(const char *dir, rig *r, bench_scene *list, int max, error *e)
         *b = (bench_scene){.s = found[i], .radius = found[i].ao_distance};
         if (!b->s.truth[0]) continue;
         if (!sample_load(&b->s, e) || !build_gbuffer(b->s.file, &b->gb, &r->log, e) ||
-            !bench_light(b, b->s.env, b->s.env_rotate, r, e) || !bench_prepare(b, e))
+            !bench_light(b, b->s.env, b->s.env_rotate, r, e) || !bench_prepare(b, e) || !bench_middle(b, dir, e))
             return 0;
+        find_mesh(b, meshes);
         kept++;
     }
     return kept;
@@ -54,6 +63,7 @@ int bench_samples(const char *dir, rig *r, bench_scene *list, int max, error *e)
 
 void bench_scene_free(bench_scene *b)
 {
+    bench_middle_free(b);
     sample_free(&b->s);
     gbuffer_free(&b->gb);
     gpu_image_free(&b->env_image);

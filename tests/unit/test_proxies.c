@@ -39,6 +39,34 @@ static void run(rig *r, const gbuffer *gb, const char *name, pass_settings set, 
     out->proxies = (proxy_set){0}; // borrowed
 }
 
+// A ball over a plane, which the picture does not show.
+typedef struct plane_and_ball {
+    rig r;
+    scene all; // with the ball
+    gbuffer gb;
+    tracer t;
+} plane_and_ball;
+
+static void open_plane(plane_and_ball *p, bool light, double fov, double plane_albedo, const sphere_proxy *ball)
+{
+    error e = {0};
+    scene s = {0};
+    must(rig_open(&p->r, light ? &(env_options){.up_z = true, .scale = 1.0} : NULL, &e), &e);
+    scene_add_plane(&s, v3(0, 0, 0), v3(0, 0, 1), v3(plane_albedo, plane_albedo, plane_albedo));
+    view v = view_perspective(40, 30, fov, 1.0);
+    view_look(&v, v3(0.4, -4, 2.5), v3(0, 0, 0), 0.0);
+    p->gb = shoot(&s, &v);
+    p->all = s;
+    if (ball) scene_add_sphere(&p->all, ball->centre, ball->radius, v3(ball->albedo[0], ball->albedo[1], ball->albedo[2]));
+    p->t = scene_tracer(&p->all);
+}
+
+static void close_plane(plane_and_ball *p)
+{
+    gbuffer_free(&p->gb);
+    rig_close(&p->r);
+}
+
 static vec3 world_at(const gbuffer *gb, int i)
 {
     const camera *c = &gb->camera;
@@ -87,57 +115,39 @@ static void sphere_over_a_plane_is_exact(void **state)
 static void reach_ends_at_the_radius(void **state)
 {
     (void)state;
-    rig r;
-    scene s = {0}, all;
-    error e = {0};
+    static plane_and_ball p;
     frame_result out;
-    must(rig_open(&r, NULL, &e), &e);
-    scene_add_plane(&s, v3(0, 0, 0), v3(0, 0, 1), v3(0.5, 0.5, 0.5));
-    all = s;
-    scene_add_sphere(&all, v3(0, 0, 1.0), 0.6, v3(0.5, 0.5, 0.5));
     sphere_proxy ball = {v3(0, 0, 1.0), 0.6, {0.5, 0.5, 0.5}};
-    view v = view_perspective(40, 30, 40.0, 1.0);
-    view_look(&v, v3(0.4, -4, 2.5), v3(0, 0, 0), 0.0);
-    gbuffer gb = shoot(&s, &v);
-    tracer t = scene_tracer(&all);
+    open_plane(&p, false, 40.0, 0.5, &ball);
     for (double radius = 0.5; radius < 1.4; radius += 0.2) {
-        run(&r, &gb, "arc", rig_settings(method_find("arc"), radius), 1 << LAYER_OCCLUSION, (proxy_set){&ball, 1}, &out);
+        run(&p.r, &p.gb, "arc", rig_settings(method_find("arc"), radius), 1 << LAYER_OCCLUSION, (proxy_set){&ball, 1}, &out);
         for (int i = 7; i < 40 * 30; i += 53) {
             truth_options o = {.radius = radius, .rays = 10000, .offset = 1e-5, .seed = 1};
-            if (gb.depth[i] <= 0.0f) continue;
-            assert_near((double)out.layers[LAYER_OCCLUSION][i], truth_occlusion(&t, world_at(&gb, i), v3(0, 0, 1), &o), 0.006);
+            if (p.gb.depth[i] <= 0.0f) continue;
+            assert_near((double)out.layers[LAYER_OCCLUSION][i], truth_occlusion(&p.t, world_at(&p.gb, i), v3(0, 0, 1), &o),
+                        0.006);
         }
         rig_free_result(&out);
     }
-    gbuffer_free(&gb);
-    rig_close(&r);
+    close_plane(&p);
 }
 
 // A sphere's light arrives: against the ray-cast bounce under a white sky.
 static void spheres_send_light(void **state)
 {
     (void)state;
-    rig r;
-    scene s = {0}, all;
-    error e = {0};
+    static plane_and_ball p;
     frame_result out;
-    must(rig_open(&r, &(env_options){.up_z = true, .scale = 1.0}, &e), &e);
-    scene_add_plane(&s, v3(0, 0, 0), v3(0, 0, 1), v3(0, 0, 0));
-    all = s;
-    scene_add_sphere(&all, v3(0, 0, 1.1), 0.6, v3(0.8, 0.4, 0.1));
     sphere_proxy ball = {v3(0, 0, 1.1), 0.6, {0.8, 0.4, 0.1}};
-    view v = view_perspective(40, 30, 50.0, 1.0);
-    view_look(&v, v3(0.4, -4, 2.5), v3(0, 0, 0), 0.0);
-    gbuffer gb = shoot(&s, &v);
-    tracer t = scene_tracer(&all);
+    open_plane(&p, true, 50.0, 0.0, &ball);
     pass_settings set = rig_settings(method_find("arc"), 2.0);
-    r.options.bounce = "arc";
-    run(&r, &gb, "arc", set, LIGHT | 1 << LAYER_INDIRECT, (proxy_set){&ball, 1}, &out);
+    p.r.options.bounce = "arc";
+    run(&p.r, &p.gb, "arc", set, LIGHT | 1 << LAYER_INDIRECT, (proxy_set){&ball, 1}, &out);
     double got[3] = {0}, truth[3] = {0}, square = 0.0;
     for (int i = 7; i < 40 * 30; i += 31) {
         truth_options o = {.rays = 900, .bounce_rays = 64, .offset = 1e-5, .seed = 3};
-        if (gb.depth[i] <= 0.0f) continue;
-        vec3 w = truth_indirect(&t, world_at(&gb, i), v3(0, 0, 1), &o);
+        if (p.gb.depth[i] <= 0.0f) continue;
+        vec3 w = truth_indirect(&p.t, world_at(&p.gb, i), v3(0, 0, 1), &o);
         const float *x = out.layers[LAYER_INDIRECT] + 3 * i;
         got[0] += (double)x[0], got[1] += (double)x[1], got[2] += (double)x[2];
         truth[0] += w.x, truth[1] += w.y, truth[2] += w.z;
@@ -146,38 +156,30 @@ static void spheres_send_light(void **state)
     print_message("bounce of a sphere: %.3f %.3f %.3f of the truth\n", got[0] / truth[0], got[1] / truth[1], got[2] / truth[2]);
     for (int k = 0; k < 3; k++) assert_near(got[k] / truth[k], 1.0, 0.05);
     rig_free_result(&out);
-    gbuffer_free(&gb);
-    rig_close(&r);
+    close_plane(&p);
 }
 
 // A second sphere behind the first, seen from every receiver, changes nothing; two apart block what each does alone.
 static void what_two_block_counts_once(void **state)
 {
     (void)state;
-    rig r;
-    scene s = {0};
-    error e = {0};
+    static plane_and_ball p;
     frame_result a, b, both, twice;
-    must(rig_open(&r, NULL, &e), &e);
-    scene_add_plane(&s, v3(0, 0, 0), v3(0, 0, 1), v3(0.5, 0.5, 0.5));
-    view v = view_perspective(40, 30, 40.0, 1.0);
-    view_look(&v, v3(0.4, -4, 2.5), v3(0, 0, 0), 0.0);
-    gbuffer gb = shoot(&s, &v);
+    open_plane(&p, false, 40.0, 0.5, NULL);
     sphere_proxy left = {v3(-1.5, 0, 0.9), 0.5, {0}}, right = {v3(1.5, 0, 0.9), 0.5, {0}}, two[] = {left, right},
                  same[] = {left, left};
     pass_settings set = rig_settings(method_find("arc"), 1e4);
-    run(&r, &gb, "arc", set, 1 << LAYER_OCCLUSION, (proxy_set){&left, 1}, &a);
-    run(&r, &gb, "arc", set, 1 << LAYER_OCCLUSION, (proxy_set){&right, 1}, &b);
-    run(&r, &gb, "arc", set, 1 << LAYER_OCCLUSION, (proxy_set){two, 2}, &both);
-    run(&r, &gb, "arc", set, 1 << LAYER_OCCLUSION, (proxy_set){same, 2}, &twice);
+    run(&p.r, &p.gb, "arc", set, 1 << LAYER_OCCLUSION, (proxy_set){&left, 1}, &a);
+    run(&p.r, &p.gb, "arc", set, 1 << LAYER_OCCLUSION, (proxy_set){&right, 1}, &b);
+    run(&p.r, &p.gb, "arc", set, 1 << LAYER_OCCLUSION, (proxy_set){two, 2}, &both);
+    run(&p.r, &p.gb, "arc", set, 1 << LAYER_OCCLUSION, (proxy_set){same, 2}, &twice);
     for (int i = 0; i < 40 * 30; i++) {
         double x = (double)a.layers[LAYER_OCCLUSION][i], y = (double)b.layers[LAYER_OCCLUSION][i];
         assert_near((double)twice.layers[LAYER_OCCLUSION][i], x, 1e-6);
         assert_near((double)both.layers[LAYER_OCCLUSION][i], x + y - 1.0, 1e-6);
     }
     rig_free_result(&a), rig_free_result(&b), rig_free_result(&both), rig_free_result(&twice);
-    gbuffer_free(&gb);
-    rig_close(&r);
+    close_plane(&p);
 }
 
 // ---- the example: a crate that hangs beside the picture, out of the camera's sight, as four spheres

@@ -44,16 +44,31 @@ static void write_corner(bool turned)
     fclose(f);
 }
 
-static gbuffer shoot_corner(scene *s, view *v, bool orthographic)
-{
+typedef struct corner {
+    scene s;
+    view v;
+    rig r;
     gbuffer gb;
+} corner;
+
+// Light is a white sky, if any.
+static void corner_open(corner *c, bool light, bool turned, bool orthographic)
+{
     error e = {0};
-    *s = (scene){0};
-    scene_corner(s, 0.4);
-    *v = orthographic ? view_orthographic(WIDTH, HEIGHT, 2.0, 1.0) : view_perspective(WIDTH, HEIGHT, 50.0, 1.0);
-    view_scene(v, s);
-    must(scene_gbuffer(s, v, &gb, &e), &e);
-    return gb;
+    *c = (corner){0};
+    must(rig_open(&c->r, light ? &(env_options){.up_z = true, .scale = 1.0} : NULL, &e), &e);
+    write_corner(turned);
+    scene_corner(&c->s, 0.4);
+    c->v = orthographic ? view_orthographic(WIDTH, HEIGHT, 2.0, 1.0) : view_perspective(WIDTH, HEIGHT, 50.0, 1.0);
+    view_scene(&c->v, &c->s);
+    must(scene_gbuffer(&c->s, &c->v, &c->gb, &e), &e);
+}
+
+static void corner_close(corner *c)
+{
+    gbuffer_free(&c->gb);
+    rig_close(&c->r);
+    remove(mesh_path());
 }
 
 static pass_settings settings(double radius, int samples, int backend)
@@ -71,31 +86,26 @@ static pass_settings settings(double radius, int samples, int backend)
 static void corner_is_the_closed_form(void **state)
 {
     (void)state;
-    scene s;
-    view v;
-    rig r;
-    error e = {0};
     for (int run = 0; run < 8; run++) {
+        static corner c;
         frame_result out;
-        bool turned = run & 1, orthographic = run & 2;
-        must(rig_open(&r, &(env_options){.up_z = true, .scale = 1.0}, &e), &e);
-        write_corner(turned);
-        gbuffer gb = shoot_corner(&s, &v, orthographic);
-        pass_settings set = settings(s.radius, 256, backends[run / 4]);
-        must(rig_run(&r, &gb, &method_raytrace, &set, ALL, &out, &e), &e);
+        error e = {0};
+        corner_open(&c, true, run & 1, run & 2);
+        pass_settings set = settings(c.s.radius, 256, backends[run / 4]);
+        must(rig_run(&c.r, &c.gb, &method_raytrace, &set, ALL, &out, &e), &e);
         double worst = 0.0, distance = 0.0, off = 0.0, light = 0.0, bounce = 0.0, n = 0.0;
         for (int i = 0; i < WIDTH * HEIGHT; i++) {
             hit h;
-            if (!scene_at_pixel(&s, &v, i % WIDTH, i / WIDTH, &h)) continue;
+            if (!scene_at_pixel(&c.s, &c.v, i % WIDTH, i / WIDTH, &h)) continue;
             double x = h.position.z > 1e-6 ? h.position.z : -h.position.y,
-                   wanted = x < s.radius ? truth_corner(x, s.radius) : 1.0;
+                   wanted = x < c.s.radius ? truth_corner(x, c.s.radius) : 1.0;
             double difference = (double)out.layers[LAYER_OCCLUSION][i] - wanted;
             off += difference, n += 1.0;
             distance += x;
             worst = fmax(worst, fabs(difference));
             light += (double)out.layers[LAYER_RADIANCE][3 * i + 1];
             bounce += (double)out.layers[LAYER_INDIRECT][3 * i + 2];
-            if (x > 1.01 * s.radius && out.layers[LAYER_OCCLUSION][i] != 1.0f) fail_msg("pixel %d is not open", i);
+            if (x > 1.01 * c.s.radius && out.layers[LAYER_OCCLUSION][i] != 1.0f) fail_msg("pixel %d is not open", i);
         }
         print_message("back end %d: occlusion off by %+.5f (worst %.3f), radiance %.5f, indirect %.5f\n", backends[run / 4],
                       off / n, worst, light / n, bounce / n);
@@ -105,70 +115,56 @@ static void corner_is_the_closed_form(void **state)
         assert_near(light / n, 0.5 + distance / n / (1000.0 * M_PI), 5e-4);
         assert_near(bounce / n, 0.125, 2e-3);
         rig_free_result(&out);
-        gbuffer_free(&gb);
-        rig_close(&r);
+        corner_close(&c);
     }
-    remove(mesh_path());
 }
 
 // Told that the axes are the picture's, a mesh with other axes is refused, and so is a mesh of something else.
 static void foreign_mesh_is_refused(void **state)
 {
     (void)state;
-    scene s;
-    view v;
-    rig r;
+    static corner c;
     error e = {0};
     frame_result out;
-    must(rig_open(&r, NULL, &e), &e);
-    write_corner(true);
-    gbuffer gb = shoot_corner(&s, &v, false);
-    gb.camera.origin = v3_add(gb.camera.origin, v3(0, 0.3, 0.3)); // neither of its surfaces fits now
-    pass_settings set = settings(s.radius, 1, TRACE_EMBREE);
+    corner_open(&c, false, true, false);
+    c.gb.camera.origin = v3_add(c.gb.camera.origin, v3(0, 0.3, 0.3)); // neither of its surfaces fits now
+    pass_settings set = settings(c.s.radius, 1, TRACE_EMBREE);
     set.mesh_axes = 0;
-    assert_false(rig_run(&r, &gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e));
+    assert_false(rig_run(&c.r, &c.gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e));
     assert_int_equal(e.code, ERR_INPUT);
     assert_string_equal(e.file, mesh_path());
     assert_non_null(strstr(e.message, "--mesh-axes"));
     rig_free_result(&out);
-    gb.camera.has_world = false;
+    c.gb.camera.has_world = false;
     e = (error){0};
-    assert_false(rig_run(&r, &gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e));
+    assert_false(rig_run(&c.r, &c.gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e));
     assert_non_null(strstr(e.message, "--camera"));
     rig_free_result(&out);
-    gbuffer_free(&gb);
-    rig_close(&r);
-    remove(mesh_path());
+    corner_close(&c);
 }
 
 // Without the module, auto takes the grid, and embree is an error that names it.
 static void missing_module_is_named(void **state)
 {
     (void)state;
-    scene s;
-    view v;
-    rig r;
+    static corner c;
     error e = {0};
     frame_result out;
     if (access(SSDO_LIBDIR "/ssdo-trace.so", R_OK) == 0) return; // an installed one would be found
     char *folder = strdup(getenv("SSDO_PLUGIN_DIR"));
     setenv("SSDO_PLUGIN_DIR", "/nowhere", 1);
-    must(rig_open(&r, NULL, &e), &e);
-    write_corner(false);
-    gbuffer gb = shoot_corner(&s, &v, false);
-    pass_settings set = settings(s.radius, 1, TRACE_EMBREE);
-    assert_false(rig_run(&r, &gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e));
+    corner_open(&c, false, false, false);
+    pass_settings set = settings(c.s.radius, 1, TRACE_EMBREE);
+    assert_false(rig_run(&c.r, &c.gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e));
     assert_int_equal(e.code, ERR_USAGE);
     assert_non_null(strstr(e.message, "ssdo-trace.so"));
     rig_free_result(&out);
     e = (error){0};
     set.trace = TRACE_AUTO;
-    must(rig_run(&r, &gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e), &e);
-    assert_null(r.job.trace.cpu);
+    must(rig_run(&c.r, &c.gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e), &e);
+    assert_null(c.r.job.trace.cpu);
     rig_free_result(&out);
-    gbuffer_free(&gb);
-    rig_close(&r);
-    remove(mesh_path());
+    corner_close(&c);
     setenv("SSDO_PLUGIN_DIR", folder, 1);
     free(folder);
 }
@@ -177,22 +173,17 @@ static void missing_module_is_named(void **state)
 static void nothing_becomes_nan(void **state)
 {
     (void)state;
-    scene s;
-    view v;
-    rig r;
-    error e = {0};
-    must(rig_open(&r, &(env_options){.up_z = true, .scale = 1.0}, &e), &e);
     for (int b = 0; b < 2; b++) {
+        static corner c;
         frame_result out;
-        write_corner(false);
-        gbuffer gb = shoot_corner(&s, &v, false);
+        error e = {0};
+        corner_open(&c, true, false, false);
         for (int i = 0; i < WIDTH * HEIGHT; i++) {
-            if (i % 7 == 0) gb.depth[i] = 1e10f;
-            if (i % 5 == 0) memset(gb.normal + 4 * i, 0, 3 * sizeof *gb.normal);
+            if (i % 7 == 0) c.gb.depth[i] = 1e10f;
+            if (i % 5 == 0) memset(c.gb.normal + 4 * i, 0, 3 * sizeof *c.gb.normal);
         }
-        pass_settings set = settings(s.radius, 4, backends[b]);
-        trace_scene_close(&r.job.trace);
-        must(rig_run(&r, &gb, &method_raytrace, &set, ALL, &out, &e), &e);
+        pass_settings set = settings(c.s.radius, 4, backends[b]);
+        must(rig_run(&c.r, &c.gb, &method_raytrace, &set, ALL, &out, &e), &e);
         for (int i = 0; i < WIDTH * HEIGHT; i++) {
             float o = out.layers[LAYER_OCCLUSION][i];
             assert_true(o >= 0.0f && o <= 1.0f);
@@ -201,10 +192,8 @@ static void nothing_becomes_nan(void **state)
                             out.layers[LAYER_RADIANCE][3 * i + k] <= 1.00001f);
         }
         rig_free_result(&out);
-        gbuffer_free(&gb);
+        corner_close(&c);
     }
-    rig_close(&r);
-    remove(mesh_path());
 }
 
 // The chances of the table's entries, summed over what they give to each texel, are density times solid angle; and the sun gets
