@@ -142,6 +142,40 @@ static void depthmask_of_a_step(void **state)
     gbuffer_free(&gb);
 }
 
+// A plane that recedes has no edge either: 0 but where the Gaussian leaves the picture or meets the depth that becomes 1, beyond
+// which depths are cut; and there little.
+static void depthmask_of_a_tilted_plane(void **state)
+{
+    error e = {0};
+    for (int orthographic = 0; orthographic < 2; orthographic++) {
+        scene s = {0};
+        gbuffer gb;
+        scene_add_plane(&s, v3(0, 0, 0), v3(0, 0, 1), v3(0.5, 0.5, 0.5));
+        view v = orthographic ? view_orthographic(WIDTH, HEIGHT, 3.0, 1.0) : view_perspective(WIDTH, HEIGHT, 40.0, 1.0);
+        view_look(&v, v3(0.4, -4, 2.5), v3(0, 0, 0), 15.0);
+        must(scene_gbuffer(&s, &v, &gb, &e), &e);
+        float *mask = mask_of(*state, &gb), *sorted = malloc(sizeof(float) * PIXELS), least = 0.0f, border = 0.0f;
+        memcpy(sorted, gb.depth, sizeof(float) * PIXELS);
+        qsort(sorted, PIXELS, sizeof *sorted, by_value);
+        float far = sorted[PIXELS * 97 / 100];
+        int reach = (int)ceil(0.03 * hypot(WIDTH, HEIGHT)), n = 0;
+        for (int i = 0; i < PIXELS; i++) {
+            int x = i % WIDTH, y = i / WIDTH;
+            bool inside = x >= reach && y >= reach && x < WIDTH - reach && y < HEIGHT - reach;
+            for (int k = 0; inside && k < 4; k++)
+                inside = gb.depth[(y + (k & 1 ? reach : -reach)) * WIDTH + x + (k & 2 ? reach : -reach)] < far;
+            assert_true(gb.depth[i] > 0.0f);
+            if (inside) least = fminf(least, mask[i]), n++;
+            border = fminf(border, mask[i]);
+        }
+        print_message("%s: %.6f inside, %.4f elsewhere\n", orthographic ? "orthographic" : "perspective", (double)least,
+                      (double)border);
+        assert_true(n > PIXELS / 2 && least == 0.0f && border > -0.03f);
+        free(sorted), free(mask);
+        gbuffer_free(&gb);
+    }
+}
+
 // ---- the composite, through whole frames
 
 typedef struct whole {
@@ -262,6 +296,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(depthmask_is_the_unsharp_mask, open_rig, close_rig),
         cmocka_unit_test_setup_teardown(depthmask_of_a_step, open_rig, close_rig),
+        cmocka_unit_test_setup_teardown(depthmask_of_a_tilted_plane, open_rig, close_rig),
         cmocka_unit_test(depthmask_scales_the_composite),
         cmocka_unit_test(occlusion_is_multiplied_onto_all),
         cmocka_unit_test_setup_teardown(occlusion_reaches_the_specular_light, open_rig, close_rig),
