@@ -176,6 +176,47 @@ static void depthmask_of_a_tilted_plane(void **state)
     }
 }
 
+// ---- scale and contrast
+
+static float *occlusion_of(rig *r, const gbuffer *gb, const char *name, double scale, double contrast)
+{
+    error e = {0};
+    frame_result out;
+    pass_settings set = rig_settings(method_find(name), 0.5);
+    set.samples = 16, set.blur = 0;
+    set.scale = scale, set.contrast = contrast;
+    must(rig_run(r, gb, method_find(name), &set, 1 << LAYER_OCCLUSION, &out, &e), &e);
+    float *occlusion = out.layers[LAYER_OCCLUSION];
+    out.layers[LAYER_OCCLUSION] = NULL;
+    rig_free_result(&out);
+    return occlusion;
+}
+
+// What is blocked times the scale, what is left to the power of the contrast; never below 0. Methods that are no obscurance hold
+// a share: nothing of it is lost before.
+static void look_is_the_formula(void **state)
+{
+    static const char *const names[] = {"arc", "hemisphere", "s3ho"};
+    static const double looks[][2] = {{1.5, 1.0}, {1.0, 2.2}, {0.4, 0.5}, {6.0, 3.0}};
+    gbuffer gb = clutter();
+    for (int m = 0; m < 3; m++) {
+        float *plain = occlusion_of(*state, &gb, names[m], 1.0, 1.0);
+        for (int k = 0; k < 4; k++) {
+            float *is = occlusion_of(*state, &gb, names[m], looks[k][0], looks[k][1]);
+            double changed = 0.0;
+            for (int i = 0; i < PIXELS; i++) {
+                double wanted = pow(fmax(0.0, 1.0 - looks[k][0] * (1.0 - (double)plain[i])), looks[k][1]);
+                changed = fmax(changed, fabs(wanted - (double)plain[i]));
+                if (!(fabs((double)is[i] - wanted) <= 2e-5)) fail_msg("%s: %.7f, expected %.7f", names[m], (double)is[i], wanted);
+            }
+            assert_true(changed > 0.1);
+            free(is);
+        }
+        free(plain);
+    }
+    gbuffer_free(&gb);
+}
+
 // ---- the composite, through whole frames
 
 typedef struct whole {
@@ -297,6 +338,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(depthmask_is_the_unsharp_mask, open_rig, close_rig),
         cmocka_unit_test_setup_teardown(depthmask_of_a_step, open_rig, close_rig),
         cmocka_unit_test_setup_teardown(depthmask_of_a_tilted_plane, open_rig, close_rig),
+        cmocka_unit_test_setup_teardown(look_is_the_formula, open_rig, close_rig),
         cmocka_unit_test(depthmask_scales_the_composite),
         cmocka_unit_test(occlusion_is_multiplied_onto_all),
         cmocka_unit_test_setup_teardown(occlusion_reaches_the_specular_light, open_rig, close_rig),
