@@ -155,9 +155,10 @@ bool pass_vpl(pass_context *c, error *e);         // radiance or beauty, albedo 
 bool pass_ssdo_bounce(pass_context *c, error *e); // radiance or beauty, albedo -> indirect
 bool pass_blur(pass_context *c, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e); // in place; NULL = none
 // What the method and the bounce made of a frame of half the size (gbuffer/half.h), brought to the size of `c`: its occlusion,
-// visibility, radiance, bent and sh, as far as `small` has them; one more layer of four components.
+// visibility, radiance, indirect, bent and sh, as far as `small` has them and `c` has not; and indirect alone, where it is made
+// after the others have gone.
 bool pass_upsample(pass_context *c, const pass_context *small, error *e);
-bool pass_upsample_colour(pass_context *c, const pass_context *small, const gpu_image *from, gpu_image *to, error *e);
+bool pass_upsample_indirect(pass_context *c, const pass_context *small, error *e);
 // Unseen spheres: they block before the looks, and add their bounce after the method's. Both do nothing without spheres.
 bool pass_proxies(pass_context *c, error *e);                 // occlusion, visibility, radiance, bent, sh: in place
 bool pass_proxies_bounce(pass_context *c, error *e);          // indirect: in place

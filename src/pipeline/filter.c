@@ -67,10 +67,11 @@ static bool run_half(pass_context *c, const plan *p, error *e)
     small.want_radiance = c->want_radiance;
     small.want_visibility = c->want_visibility;
     small.want_bent = c->want_bent;
-    ok = run_method(&small, p, e) && pass_upsample(c, &small, e);
-    if (ok && p->bounce)
-        ok = finish_light(&small, p, e) && run_bounce(&small, p, e) &&
-             pass_upsample_colour(c, &small, &small.indirect, &c->indirect, e);
+    // All layers go up together, unless the bounce needs what is done to them at either size.
+    bool early = p->bounce && (p->look || p->irradiance || (c->proxies && c->proxies->count > 0));
+    ok = run_method(&small, p, e) && (!early || pass_upsample(c, &small, e));
+    if (ok && p->bounce) ok = (!early || finish_light(&small, p, e)) && run_bounce(&small, p, e);
+    ok = ok && (early ? pass_upsample_indirect(c, &small, e) : pass_upsample(c, &small, e));
     take_times(c, &small);
     pass_end(&small);
 out:

@@ -1,9 +1,9 @@
 #version 450 core
-// lint: SCALARS=2 COLOURS=1 OPEN_LIGHT | SCALARS=1 COLOURS=0 OPEN_LIGHT | SCALARS=0 COLOURS=1
+// lint: SCALARS=2 COLOURS=2 OPEN_LIGHT | SCALARS=1 COLOURS=1 OPEN_LIGHT | SCALARS=1 COLOURS=0 | SCALARS=0 COLOURS=1
 // Layers of a frame of half the size (src/gbuffer/half.h) brought to the full one: a bilinear mean over the four nearest small pixels, each
 // weighing less the further it lies off the pixel's tangent plane, in small footprints, and the more its normal differs (as in
 // blur.frag). Where none of the four is on the pixel's surface, the best of sixteen is taken as it is; where no surface is near at all
-// (a speck seen edge-on) the pixel is open, and with OPEN_LIGHT its light is the SH irradiance / pi.
+// (a speck seen edge-on) the pixel is open, and with OPEN_LIGHT the light of colour 0 is the SH irradiance / pi.
 // SCALARS and COLOURS say how many r32f and rgba32f images go through together.
 #include "include/frame.glsl"
 #ifdef OPEN_LIGHT
@@ -15,26 +15,34 @@ layout(std140, binding = 1) uniform Params {
     float sharpness; // plane distance, in footprints of a small pixel, at which the weight has fallen to exp(-1/2)
     int unused;
 } params;
+// Copies made before main: llvmpipe reads a uniform inside any control flow once for every lane.
+ivec2 small_size = ivec2(params.small_size.x, params.small_size.y);
+float sharpness = params.sharpness;
 
 layout(r32f, binding = 2) readonly uniform image2D small_depth;
 layout(rgba32f, binding = 3) readonly uniform image2D small_normal;
 #if SCALARS > 0
 layout(r32f, binding = 4) readonly uniform image2D scalar0_in;
-layout(r32f, binding = 5) writeonly uniform image2D scalar0_out;
+layout(location = 0) out float scalar0_out;
 #endif
 #if SCALARS > 1
-layout(r32f, binding = 6) readonly uniform image2D scalar1_in;
-layout(r32f, binding = 7) writeonly uniform image2D scalar1_out;
+layout(r32f, binding = 5) readonly uniform image2D scalar1_in;
+layout(location = 1) out float scalar1_out;
 #endif
 #if COLOURS > 0
-layout(rgba32f, binding = 8) readonly uniform image2D colour0_in;
-layout(rgba32f, binding = 9) writeonly uniform image2D colour0_out;
+layout(rgba32f, binding = 6) readonly uniform image2D colour0_in;
+layout(location = 2) out vec4 colour0_out;
+#endif
+#if COLOURS > 1
+layout(rgba32f, binding = 7) readonly uniform image2D colour1_in;
+layout(location = 3) out vec4 colour1_out;
 #endif
 
-struct Values { float scalar0, scalar1; vec4 colour0; };
+struct Values { float scalar0, scalar1; vec4 colour0, colour1; };
+const Values OPEN = Values(1.0, 1.0, vec4(0.0), vec4(0.0)), ZERO = Values(0.0, 0.0, vec4(0.0), vec4(0.0));
 
 Values load(ivec2 q) {
-    Values v = Values(0.0, 0.0, vec4(0.0));
+    Values v = ZERO;
 #if SCALARS > 0
     v.scalar0 = imageLoad(scalar0_in, q).r;
 #endif
@@ -44,23 +52,29 @@ Values load(ivec2 q) {
 #if COLOURS > 0
     v.colour0 = imageLoad(colour0_in, q);
 #endif
+#if COLOURS > 1
+    v.colour1 = imageLoad(colour1_in, q);
+#endif
     return v;
 }
 
-void store(ivec2 p, Values v) {
+void store(Values v) {
 #if SCALARS > 0
-    imageStore(scalar0_out, p, vec4(v.scalar0));
+    scalar0_out = v.scalar0;
 #endif
 #if SCALARS > 1
-    imageStore(scalar1_out, p, vec4(v.scalar1));
+    scalar1_out = v.scalar1;
 #endif
 #if COLOURS > 0
-    imageStore(colour0_out, p, v.colour0);
+    colour0_out = v.colour0;
+#endif
+#if COLOURS > 1
+    colour1_out = v.colour1;
 #endif
 }
 
 float small_depth_at(ivec2 q) {
-    bool inside = all(greaterThanEqual(q, ivec2(0))) && all(lessThan(q, params.small_size));
+    bool inside = all(greaterThanEqual(q, ivec2(0))) && all(lessThan(q, small_size));
     return inside ? imageLoad(small_depth, q).r : 0.0;
 }
 
@@ -70,12 +84,14 @@ float agreement(ivec2 q, float depth, vec3 P, vec3 N, float scale) {
     return exp(-0.5 * off_plane * off_plane) * pow(max(0.0, dot(N, imageLoad(small_normal, q).xyz)), 8.0);
 }
 
-// The small pixel of 4 x 4 that agrees best, by a measure that still tells far ones apart; false if none holds a surface.
-bool best_of(ivec2 base, vec3 P, vec3 N, float scale, out ivec2 best) {
+// The small pixel of 4 x 4 that agrees best, by a measure that still tells far ones apart; negative if none holds a surface, or if it is
+// not `wanted`. A software renderer runs the body of a branch for lanes that did not take it, but leaves a loop when no lane is left.
+ivec2 best_of(ivec2 base, vec3 P, vec3 N, float scale, bool wanted) {
     float least = 1e30;
-    best = ivec2(-1);
-    for (int y = -1; y <= 2; y++)
-        for (int x = -1; x <= 2; x++) {
+    ivec2 best = ivec2(-1);
+    int last = wanted ? 2 : -2;
+    for (int y = -1; y <= last; y++)
+        for (int x = -1; x <= last; x++) {
             ivec2 q = base + ivec2(x, y);
             float depth = small_depth_at(q);
             if (depth == 0.0) continue;
@@ -86,48 +102,55 @@ bool best_of(ivec2 base, vec3 P, vec3 N, float scale, out ivec2 best) {
                 best = q;
             }
         }
-    return best.x >= 0;
+    return best;
+}
+
+// For a pixel that none of the four is near.
+Values lost(ivec2 base, vec3 P, vec3 N, float scale, bool wanted) {
+    Values v = OPEN;
+    ivec2 best = best_of(base, P, N, scale, wanted);
+    for (int n = best.x >= 0 ? 0 : 1; n < 1; n++) v = load(best);
+#ifdef OPEN_LIGHT
+    for (int n = wanted && best.x < 0 ? 0 : 1; n < 1; n++) v.colour0 = vec4(sh_irradiance_over_pi(to_map(N)), 0.0);
+#endif
+    return v;
 }
 
 void main() {
     ivec2 p = this_pixel();
-    if (!in_tile(p)) return;
     float depth = depth_at(p);
-    if (depth == 0.0) {
-        store(p, Values(1.0, 1.0, vec4(0.0)));
-        return;
-    }
     vec3 P = position_of(p, depth), N = normal_at(p);
-    float scale = 1.0 / (params.sharpness * 2.0 * footprint(depth));
+    float scale = 1.0 / (sharpness * 2.0 * footprint(depth));
     vec2 place = 0.5 * (vec2(p) + 0.5) - 0.5;
-    ivec2 base = ivec2(floor(place)), first = ivec2(-1);
+    ivec2 base = ivec2(floor(place));
     vec2 part = place - vec2(base);
     // Differences from one tap are summed, so that a constant passes unchanged to the bit.
-    Values start = Values(1.0, 1.0, vec4(0.0)), sum = Values(0.0, 0.0, vec4(0.0));
+    Values start = OPEN, sum = ZERO;
     float total = 0.0;
-    for (int k = 0; k < 4; k++) {
+    bool none = true;
+    for (int k = 0; k < (depth != 0.0 ? 4 : 0); k++) {
         ivec2 offset = ivec2(k & 1, k >> 1), q = base + offset;
         float tap_depth = small_depth_at(q);
         if (tap_depth == 0.0) continue;
         vec2 near = mix(1.0 - part, part, vec2(offset));
         float w = near.x * near.y * agreement(q, tap_depth, P, N, scale);
         Values v = load(q);
-        if (first.x < 0) {
-            first = q;
-            start = v;
-        }
+        if (none) start = v;
+        none = false;
         sum.scalar0 += w * (v.scalar0 - start.scalar0);
         sum.scalar1 += w * (v.scalar1 - start.scalar1);
         sum.colour0 += w * (v.colour0 - start.colour0);
+        sum.colour1 += w * (v.colour1 - start.colour1);
         total += w;
     }
     if (total > 1e-3) {
-        store(p, Values(start.scalar0 + sum.scalar0 / total, start.scalar1 + sum.scalar1 / total, start.colour0 + sum.colour0 / total));
-    } else {
-        if (best_of(base, P, N, scale, first)) start = load(first);
-#ifdef OPEN_LIGHT
-        else start.colour0 = vec4(sh_irradiance_over_pi(to_map(N)), 0.0);
-#endif
-        store(p, start);
+        start.scalar0 += sum.scalar0 / total;
+        start.scalar1 += sum.scalar1 / total;
+        start.colour0 += sum.colour0 / total;
+        start.colour1 += sum.colour1 / total;
     }
+    bool wanted = depth != 0.0 && total <= 1e-3;
+    Values other = lost(base, P, N, scale, wanted);
+    if (wanted) start = other;
+    store(start);
 }
