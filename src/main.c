@@ -76,6 +76,7 @@ static bool run(const options *o, log_t *log, error *e)
     job j;
     bool ok = job_open(&j, o, log, e) && preview_check(o, e);
     j.stop = &stop_signal;
+    j.no_floats = !o->preview;
     if (ok) ok = batch_is(o) ? batch_run(&j, e) : run_frame(&j, e);
     job_close(&j);
     return ok;

@@ -3,6 +3,7 @@
 #ifndef SSDO_BASE_HALF_H
 #define SSDO_BASE_HALF_H
 
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -26,5 +27,8 @@ static inline float half_to_float(uint16_t h)
     memcpy(&f, &bits, sizeof f);
     return f;
 }
+
+// n of them, at the processor's own speed where it can.
+void half_to_floats(const uint16_t *from, size_t n, float *to);
 
 #endif

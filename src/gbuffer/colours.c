@@ -1,5 +1,6 @@
 // The colour layers as finite floats.
 #include <float.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "base/threads.h"
@@ -17,29 +18,53 @@ typedef struct job {
     atomic_size_t *bad; // counts samples that are NaN or infinite
 } job;
 
-static float tamed(double v, bool unit)
+enum { BLOCK = 256 }; // pixels converted at a time, in the nearest cache
+
+static float tamed(float v, bool unit)
 {
-    double low = unit ? 0.0 : -(double)most, high = unit ? 1.0 : (double)most;
-    if (v >= low && v <= high) return (float)v;
-    if (v > high) return (float)high;
-    return v >= -DBL_MAX && !unit ? -most : 0.0f; // NaN and -infinity are 0
+    float low = unit ? 0.0f : -most, high = unit ? 1.0f : most;
+    if (v >= low && v <= high) return v;
+    if (v > high) return high;
+    return v >= -FLT_MAX && !unit ? -most : 0.0f; // NaN and -infinity are 0
+}
+
+// n samples of a row from pixel x on as floats, NaN outside the part's window. Adds those that are stored as NaN or infinity to
+// *bad.
+static void fetch(const plane *p, int x, int y, int n, float *to, size_t *bad)
+{
+    int from = x + p->dx, row = y + p->dy, first = from < 0 ? -from : 0, last = from + n > p->width ? p->width - from : n;
+    if (row < 0 || row >= p->height || first > n) first = last = n;
+    if (last < first) last = first;
+    for (int i = 0; i < first; i++) to[i] = NAN;
+    for (int i = last; i < n; i++) to[i] = NAN;
+    if (first == last) return;
+    size_t at = (size_t)row * (size_t)p->width + (size_t)(from + first), count = (size_t)(last - first);
+    if (p->type == SAMPLE_HALF)
+        half_to_floats((const uint16_t *)p->data + at, count, to + first);
+    else if (p->type == SAMPLE_FLOAT)
+        memcpy(to + first, (const float *)p->data + at, count * sizeof *to);
+    else
+        for (size_t i = 0; i < count; i++) to[(size_t)first + i] = (float)((const uint32_t *)p->data)[at + i];
+    for (int i = first; i < last; i++) *bad += isfinite(to[i]) ? 0 : 1;
+}
+
+static void convert_block(const job *j, int x, int y, int n, size_t *bad)
+{
+    const size_t step = (size_t)j->components;
+    float values[BLOCK];
+    for (int c = 0; c < j->components; c++) {
+        float *to = j->to + ((size_t)y * (size_t)j->width + (size_t)x) * step + (size_t)c;
+        if (j->from[c].data) fetch(&j->from[c], x, y, n, values, bad);
+        for (int i = 0; i < n; i++, to += step) *to = j->from[c].data ? tamed(values[i], j->unit) : j->fill[c];
+    }
 }
 
 static bool convert_row(void *context, size_t row, int worker)
 {
     (void)worker;
     const job *j = context;
-    const size_t step = (size_t)j->components;
     size_t bad = 0;
-    for (int c = 0; c < j->components; c++) {
-        const plane from = j->from[c];
-        float *to = j->to + row * (size_t)j->width * step + (size_t)c;
-        for (int x = 0; x < j->width; x++, to += step) {
-            double v = from.data ? plane_get(&from, x, (int)row) : (double)j->fill[c];
-            bad += !isfinite(v) && plane_holds(&from, x, (int)row);
-            *to = tamed(v, j->unit && from.data);
-        }
-    }
+    for (int x = 0; x < j->width; x += BLOCK) convert_block(j, x, (int)row, j->width - x < BLOCK ? j->width - x : BLOCK, &bad);
     if (bad) atomic_fetch_add(j->bad, bad);
     return true;
 }
@@ -70,12 +95,23 @@ static bool material(build *b)
     return convert(b, &j, &b->g->material);
 }
 
+// Without coverage: true, for nobody knows.
+static bool sees_background(const gbuffer *g)
+{
+    size_t pixels = (size_t)g->width * (size_t)g->height;
+    for (size_t i = 0; g->coverage && i < pixels; i++)
+        if (g->coverage[i] < 1.0f) return true;
+    return !g->coverage;
+}
+
 bool colours_make(build *b)
 {
     gbuffer *g = b->g;
+    unsigned beauty = NEED_BEAUTY;
+    if (b->options->need & NEED_BACKGROUND && sees_background(g)) beauty |= NEED_BACKGROUND;
     g->has_alpha = b->r->components[ROLE_ALPHA] > 0;
     g->has_diffuse_indirect = b->r->components[ROLE_DIFFUSE_INDIRECT] > 0;
-    return colour(b, NEED_ALBEDO, ROLE_ALBEDO, &g->albedo) && colour(b, NEED_BEAUTY, ROLE_BEAUTY, &g->beauty) &&
+    return colour(b, NEED_ALBEDO, ROLE_ALBEDO, &g->albedo) && colour(b, beauty, ROLE_BEAUTY, &g->beauty) &&
            colour(b, NEED_EMISSION, ROLE_EMISSION, &g->emission) &&
            colour(b, NEED_DIFFUSE_LIGHT, ROLE_DIFFUSE_DIRECT, &g->diffuse_direct) && material(b);
 }

@@ -19,6 +19,7 @@ enum gbuffer_need {
     NEED_EMISSION = 1 << 3,
     NEED_DIFFUSE_LIGHT = 1 << 4, // the renderer's own diffuse direct (and whether indirect exists)
     NEED_COVERAGE = 1 << 5,
+    NEED_BACKGROUND = 1 << 6, // the beauty, if any pixel is not wholly covered
 };
 
 typedef struct gbuffer_options {

@@ -65,6 +65,8 @@ void gpu_image_free(gpu_image *image);
 // Whole level from/to tightly packed floats with as many components as the format has.
 void gpu_image_upload(gpu_image *image, int level, const float *pixels);
 void gpu_image_download(const gpu_image *image, float *pixels);
+// Rows y .. y + rows - 1, of at most 1 GiB.
+void gpu_image_download_rows(const gpu_image *image, int y, int rows, float *pixels);
 void gpu_image_clear(gpu_image *image, const float value[4]);
 // Binds as image unit `unit` for reading, writing or both. An image with id 0 is skipped.
 void gpu_bind_image(int unit, const gpu_image *image, GLenum access);

@@ -54,20 +54,27 @@ void gpu_image_upload(gpu_image *image, int level, const float *pixels)
     glTextureSubImage2D(image->id, level, 0, 0, w > 0 ? w : 1, h > 0 ? h : 1, transfer_format(image->format), GL_FLOAT, pixels);
 }
 
-void gpu_image_download(const gpu_image *image, float *pixels)
+static size_t row_bytes(const gpu_image *image)
+{
+    GLenum f = transfer_format(image->format);
+    return (size_t)image->width * (f == GL_RED ? 1 : f == GL_RG || f == GL_RG_INTEGER ? 2 : 4) * sizeof(float);
+}
+
+void gpu_image_download_rows(const gpu_image *image, int y, int rows, float *pixels)
 {
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-    size_t components = transfer_format(image->format) == GL_RED ? 1 : transfer_format(image->format) == GL_RG ? 2 : 4;
-    size_t bytes = (size_t)image->width * (size_t)image->height * components * sizeof(float);
-    // glGetTextureImage counts its buffer in a GLsizei; larger images go in bands.
-    int rows = image->height;
-    if (bytes > 0x40000000u) rows = (int)(0x40000000u / ((size_t)image->width * components * sizeof(float)));
-    for (int y = 0; y < image->height; y += rows) {
-        int n = image->height - y < rows ? image->height - y : rows;
-        glGetTextureSubImage(image->id, 0, 0, y, 0, image->width, n, 1, transfer_format(image->format), GL_FLOAT,
-                             (GLsizei)((size_t)n * (size_t)image->width * components * sizeof(float)),
-                             pixels + (size_t)y * (size_t)image->width * components);
-    }
+    glGetTextureSubImage(image->id, 0, 0, y, 0, image->width, rows, 1, transfer_format(image->format), GL_FLOAT,
+                         (GLsizei)((size_t)rows * row_bytes(image)), pixels);
+}
+
+void gpu_image_download(const gpu_image *image, float *pixels)
+{
+    // glGetTextureSubImage counts its buffer in a GLsizei; larger images go in bands.
+    size_t row = row_bytes(image);
+    int most = (int)(0x40000000u / row);
+    for (int y = 0; y < image->height; y += most)
+        gpu_image_download_rows(image, y, image->height - y < most ? image->height - y : most,
+                                pixels + (size_t)y * (row / sizeof *pixels));
 }
 
 void gpu_image_clear(gpu_image *image, const float value[4])

@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "gbuffer/half.h"
+#include "pipeline/read_back.h"
 
 // The bounce that --bounce names, else the method's own.
 static bool (*bounce_of(const plan *p))(pass_context *, error *)
@@ -51,9 +52,12 @@ static void take_times(pass_context *c, const pass_context *small)
 
 static bool run_half(pass_context *c, const plan *p, error *e)
 {
-    gbuffer gb;
+    gbuffer gb, whole = *c->gb; // borrows its arrays
     pass_context small;
-    if (!gbuffer_halve(c->gb, c->threads, &gb, e)) return false;
+    // What the bounce gathers; nothing else at half size looks at colours.
+    if (!p->bounce) whole.albedo = NULL;
+    if (!p->bounce || c->set.relight) whole.beauty = NULL;
+    if (!gbuffer_halve(&whole, c->threads, &gb, e)) return false;
     pass_settings set = c->set;
     set.blur = (set.blur + 1) / 2; // as wide on the surface as at full size
     bool ok = pass_begin(&small, c->g, &gb, c->env, &set, c->timing, c->log, e);
@@ -90,92 +94,6 @@ static bool run_passes(pass_context *c, const plan *p, error *e)
     return !p->composite || pass_composite(c, e);
 }
 
-// A layer never holds NaN or infinity, whatever happened before; occlusion stays in 0..1 and light is not negative.
-static inline float sane(float v, bool share, bool light)
-{
-    if (!(fabsf(v) <= 3e38f)) v = share ? 1.0f : isnan(v) ? 0.0f : copysignf(3e38f, v);
-    if (share) return v < 0.0f ? 0.0f : v > 1.0f ? 1.0f : v;
-    return light && v < 0.0f ? 0.0f : v;
-}
-
-// Leaves the first `channels` of every `stored` components, in place and in one sweep: the picture is larger than any cache.
-static void sanitise(layer_id l, float *v, size_t pixels, size_t stored, size_t channels)
-{
-    bool share = l == LAYER_OCCLUSION || l == LAYER_VISIBILITY,
-         light = l == LAYER_RADIANCE || l == LAYER_INDIRECT || l == LAYER_SPECULAR;
-    float *to = v;
-    for (size_t i = 0; i < pixels; i++, v += stored)
-        for (size_t k = 0; k < channels; k++) *to++ = sane(v[k], share, light);
-}
-
-// Bent normals: unit length, in the space of the file's normals. Where nothing is open the normal stands in.
-static void point_along(const gbuffer *gb, float *v, size_t pixels)
-{
-    for (size_t i = 0; i < pixels; i++) {
-        float *w = v + 3 * i;
-        const float *n = gb->normal + 4 * i;
-        vec3 d = v3((double)w[0], (double)w[1], (double)w[2]);
-        if (v3_length(d) < 1e-4) d = v3((double)n[0], (double)n[1], (double)n[2]);
-        d = v3_normalize(m3_apply(gb->normal_from_camera, d));
-        w[0] = (float)d.x, w[1] = (float)d.y, w[2] = (float)d.z;
-    }
-}
-
-// Two pictures of four components, one behind the other, to one of eight.
-static bool interleave(float *v, size_t pixels, error *e)
-{
-    float *t = mem_pixels(8 * pixels, sizeof *t, e);
-    if (!t) return false;
-    for (size_t i = 0; i < pixels; i++) {
-        memcpy(t + 8 * i, v + 4 * i, 4 * sizeof *t);
-        memcpy(t + 8 * i + 4, v + 4 * (pixels + i), 4 * sizeof *t);
-    }
-    memcpy(v, t, 8 * pixels * sizeof *t);
-    free(t);
-    return true;
-}
-
-static bool read_back(const gpu_image *image, layer_id l, frame_result *r, error *e)
-{
-    size_t pixels = (size_t)r->gb.width * (size_t)r->gb.height, channels = strlen(layer_table[l].channels);
-    bool last = l == LAYER_SH_3; // its last three coefficients are in the next image
-    size_t stored = image->format == GL_R32F ? 1 : last ? 8 : 4;
-    float *v = mem_pixels(pixels * stored, sizeof *v, e);
-    if (!v) return false;
-    gpu_image_download(image, v);
-    if (last) gpu_image_download(image + 1, v + 4 * pixels);
-    if (last && !interleave(v, pixels, e)) {
-        free(v);
-        return false;
-    }
-    sanitise(l, v, pixels, stored, channels);
-    if (l == LAYER_BENT) point_along(&r->gb, v, pixels);
-    r->layers[l] = v;
-    return true;
-}
-
-static bool read_layers(const pass_context *c, frame_result *r, error *e)
-{
-    const gpu_image *images[LAYER_COUNT] = {
-        [LAYER_OCCLUSION] = &c->occlusion,
-        [LAYER_RADIANCE] = &c->radiance,
-        [LAYER_INDIRECT] = &c->indirect,
-        [LAYER_COMPOSITE] = &c->composite,
-        [LAYER_VISIBILITY] = c->visibility.id ? &c->visibility : &c->occlusion,
-        [LAYER_SPECULAR] = &c->specular,
-        [LAYER_DIFFUSE] = &c->diffuse,
-        [LAYER_DEPTHMASK] = &c->depthmask,
-        [LAYER_BENT] = &c->bent,
-        [LAYER_SH_0] = &c->sh[0],
-        [LAYER_SH_1] = &c->sh[1],
-        [LAYER_SH_2] = &c->sh[2],
-        [LAYER_SH_3] = &c->sh[3],
-    };
-    for (int i = 0; i < LAYER_COUNT; i++)
-        if (r->plan.layers & 1u << i && !read_back(images[i], (layer_id)i, r, e)) return false;
-    return true;
-}
-
 static double milliseconds(clockid_t clock)
 {
     struct timespec t;
@@ -183,13 +101,12 @@ static double milliseconds(clockid_t clock)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-// Coverage matters to the composite, and where a pixel has a share of a surface but none recorded, which the edges pass fills.
-static bool needs_coverage(const frame_result *r)
+// Without coverage the passes take a pixel for covered where it has a surface.
+static bool needs_coverage(const gbuffer *gb)
 {
-    size_t pixels = (size_t)r->gb.width * (size_t)r->gb.height;
-    if (!r->gb.coverage || r->plan.composite) return r->gb.coverage != NULL;
-    for (size_t i = 0; i < pixels; i++)
-        if (r->gb.coverage[i] > 0.0f && r->gb.depth[i] == 0.0f) return true;
+    size_t pixels = (size_t)gb->width * (size_t)gb->height;
+    for (size_t i = 0; gb->coverage && i < pixels; i++)
+        if (gb->coverage[i] != (gb->depth[i] > 0.0f ? 1.0f : 0.0f)) return true;
     return false;
 }
 
@@ -199,7 +116,7 @@ bool filter_frame(job *j, frame_result *r, error *e)
     double wall = milliseconds(CLOCK_MONOTONIC), cpu = milliseconds(CLOCK_PROCESS_CPUTIME_ID);
     const environment *env = j->env_loaded ? &j->env : NULL;
     gbuffer gb = r->gb; // borrows its arrays
-    if (!needs_coverage(r)) gb.coverage = NULL;
+    if (!needs_coverage(&gb)) gb.coverage = NULL;
     if (!pass_begin(&c, &j->g, &gb, env, &r->set, j->o->report != NULL, j->log, e)) return false;
     c.environment = j->env_image;
     c.sunless = &j->sunless;
@@ -216,7 +133,7 @@ bool filter_frame(job *j, frame_result *r, error *e)
     bool ok = run_passes(&c, &r->plan, e) && gpu_finish(&j->g, "the passes", e);
     r->wall_ms[STAGE_PASSES] = milliseconds(CLOCK_MONOTONIC) - wall;
     r->cpu_ms[STAGE_PASSES] = milliseconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
-    ok = ok && !job_stopped(j) && read_layers(&c, r, e) && gpu_finish(&j->g, "the read-back", e);
+    ok = ok && !job_stopped(j) && read_back(j, &c, r, e) && gpu_finish(&j->g, "the read-back", e);
     r->wall_ms[STAGE_READ_BACK] = milliseconds(CLOCK_MONOTONIC) - wall - r->wall_ms[STAGE_PASSES];
     r->cpu_ms[STAGE_READ_BACK] = milliseconds(CLOCK_PROCESS_CPUTIME_ID) - cpu - r->cpu_ms[STAGE_PASSES];
     memcpy(r->timings, c.timings, sizeof r->timings);

@@ -375,7 +375,10 @@ bool frame_measure_radius(const job *j, const char *const *inputs, int count, do
 
 static void free_view(frame_result *r)
 {
-    for (int i = 0; i < LAYER_COUNT; i++) free(r->layers[i]);
+    for (int i = 0; i < LAYER_COUNT; i++) {
+        free(r->layers[i]);
+        for (int k = 0; k < LAYER_CHANNELS; k++) free(r->samples[i][k]);
+    }
     for (int k = 0; k < SH_IMAGES; k++) free(r->stored_sh[k]);
     proxies_free(&r->proxies);
     gbuffer_free(&r->gb);

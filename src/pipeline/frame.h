@@ -25,6 +25,7 @@ typedef struct job {
     trace_scene trace;        // --mesh
     const volatile int *stop; // borrowed, may be NULL: once it is not zero, frames are dropped unless they are being written
     progress *progress;       // borrowed, may be NULL
+    bool no_floats;           // nobody looks at a frame's `layers`: they are not kept
     double shot_radius;       // automatic radius of the whole sequence; 0: each frame has its own
 } job;
 
@@ -48,14 +49,17 @@ typedef struct frame_result {
     plane_set planes;  // that stood in for what the camera does not see; none where the method has no use for them
     int tile_size, tiles, tiles_occupied; // tiles without a surface are not dispatched (but for the composite of a background)
     size_t clamped;                       // samples of ours that a half could not hold
-    float *layers[LAYER_COUNT];           // width * height * channels, interleaved; NULL where not made
-    float *stored_sh[SH_IMAGES];          // --from-sh: what the input brought along, else NULL
+    void *samples[LAYER_COUNT]
+                 [LAYER_CHANNELS];  // by channel, width * height of types[layer], as they are written; NULL where not made
+    sample_type types[LAYER_COUNT]; //
+    float *layers[LAYER_COUNT];     // the same before rounding, interleaved; NULL where not made or not kept
+    float *stored_sh[SH_IMAGES];    // --from-sh: what the input brought along, else NULL
     bool second_part;
     const char *view;               // the stereo view this is, the file's string; NULL without views
     struct frame_result *next_view; // owned; shares the file
 } frame_result;
 
-// stop and progress are the caller's to set afterwards.
+// stop, progress and no_floats are the caller's to set afterwards.
 bool job_open(job *j, const options *o, log_t *log, error *e);
 // True if the run was asked to stop.
 bool job_stopped(const job *j);

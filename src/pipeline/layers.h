@@ -23,6 +23,8 @@ typedef enum layer_id {
     LAYER_COUNT
 } layer_id;
 
+enum { LAYER_CHANNELS = 7 }; // of a layer, at most
+
 typedef struct layer_info {
     const char *name;
     const char *channels; // one letter each, "RGB"

@@ -15,7 +15,6 @@ enum { MAX_OURS = LAYER_COUNT * 4 + 5, NAME_SIZE = 128, MAX_ATTRS = 12 + VIEWS_M
 typedef struct assembly {
     char names[MAX_OURS][NAME_SIZE];
     exr_out_channel ours[MAX_OURS];
-    void *data[MAX_OURS]; // owned
     int our_count;
     exr_out_attr attrs[MAX_ATTRS];
     int attr_count;
@@ -115,32 +114,6 @@ static int compression_of(const options *o, const exr_part *part)
     return part->lossy ? EXR_COMPRESSION_ZIP : part->compression;
 }
 
-// A picture that stands beside a float beauty keeps its precision, so that an untouched beauty comes back bit for bit.
-static sample_type type_of(const job *j, const frame_result *r, layer_id l)
-{
-    if (j->o->output_float) return SAMPLE_FLOAT;
-    channel_ref beauty = r->resolution.channels[ROLE_BEAUTY][0];
-    if (l == LAYER_COMPOSITE && !r->plan.relight && r->resolution.components[ROLE_BEAUTY] > 0)
-        return r->file->parts[beauty.part].channels[beauty.channel].type;
-    return SAMPLE_HALF;
-}
-
-// Under the name that stands in a->names already.
-static bool add_channel(assembly *a, frame_result *r, const float *v, size_t stride, sample_type type, error *e)
-{
-    size_t n = (size_t)r->gb.width * (size_t)r->gb.height;
-    void *data = mem_pixels(n, sample_size(type), e);
-    if (!data) return false;
-    if (type == SAMPLE_HALF)
-        r->clamped += exr_to_half(v, stride, n, data);
-    else
-        for (size_t i = 0; i < n; i++) ((float *)data)[i] = v[i * stride];
-    a->data[a->our_count] = data;
-    a->ours[a->our_count] = (exr_out_channel){a->names[a->our_count], type, data};
-    a->our_count++;
-    return true;
-}
-
 // The channels of the composite once more, as R, G, B and A.
 static void add_main(assembly *a, const naming *n)
 {
@@ -158,24 +131,22 @@ static void add_main(assembly *a, const naming *n)
 
 static naming naming_of(const job *j, const frame_result *r) { return (naming){j->o, r->file, r->view}; }
 
-static bool add_layers(assembly *a, const job *j, frame_result *r, error *e)
+static void add_layers(assembly *a, const job *j, const frame_result *r)
 {
     const naming n = naming_of(j, r);
-    for (int l = 0; l < LAYER_COUNT; l++) {
-        size_t channels = strlen(layer_table[l].channels);
-        for (size_t k = 0; r->layers[l] && k < channels; k++) {
+    for (int l = 0; l < LAYER_COUNT; l++)
+        for (int k = 0; r->samples[l][0] && layer_table[l].channels[k]; k++) {
             layer_channel(&n, layer_table[l].name, layer_table[l].channels[k], a->names[a->our_count]);
-            if (!add_channel(a, r, r->layers[l] + k, channels, type_of(j, r, (layer_id)l), e)) return false;
+            a->ours[a->our_count] = (exr_out_channel){a->names[a->our_count], r->types[l], r->samples[l][k]};
+            a->our_count++;
         }
-    }
-    if (!r->layers[LAYER_COMPOSITE] || !r->resolution.components[ROLE_ALPHA]) return true;
+    if (!r->samples[LAYER_COMPOSITE][0] || !r->resolution.components[ROLE_ALPHA]) return;
     // The composite's alpha is the input's own, bits and type.
     channel_ref ref = r->resolution.channels[ROLE_ALPHA][0];
     const exr_channel *alpha = &r->file->parts[ref.part].channels[ref.channel];
     layer_channel(&n, "composite", 'A', a->names[a->our_count]);
     a->ours[a->our_count] = (exr_out_channel){a->names[a->our_count], alpha->type, alpha->data};
     a->our_count++;
-    return true;
 }
 
 static exr_out_attr *add_attr(assembly *a, const char *name, exr_attr_kind kind)
@@ -412,7 +383,7 @@ static bool add_view(book *k, const job *j, frame_result *r, error *e)
     assembly *a = k->views[k->view_count] = mem_zero(1, sizeof *a, e);
     if (!a) return false;
     k->view_count++;
-    if (!add_layers(a, j, r, e)) return false;
+    add_layers(a, j, r);
     const naming n = naming_of(j, r);
     if (j->o->main_composite) add_main(a, &n);
     add_attributes(a, j, r);
@@ -426,10 +397,7 @@ static bool add_view(book *k, const job *j, frame_result *r, error *e)
 
 static void free_book(book *k)
 {
-    for (int v = 0; v < k->view_count; v++) {
-        for (int i = 0; i < MAX_OURS; i++) free(k->views[v]->data[i]);
-        free(k->views[v]);
-    }
+    for (int v = 0; v < k->view_count; v++) free(k->views[v]);
     for (int i = 0; i < k->part_count; i++) free(k->parts[i].channels);
     free(k->parts);
     free(k->sources);

@@ -140,7 +140,8 @@ bool plan_make(const options *o, const exr_file *file, const resolution *r, plan
 
     p->need = NEED_COVERAGE;
     if (in.albedo && (p->bounce || p->composite)) p->need |= NEED_ALBEDO;
-    if (in.beauty && (p->composite || (p->bounce && !p->relight))) p->need |= NEED_BEAUTY;
+    if (in.beauty && !p->relight && (p->composite || p->bounce)) p->need |= NEED_BEAUTY;
+    if (in.beauty && p->relight && p->composite) p->need |= NEED_BACKGROUND;
     if (p->specular) p->need |= NEED_MATERIAL;
     if (in.emission && relit) p->need |= NEED_EMISSION;
     if (in.diffuse_direct && p->composite && !p->relight) p->need |= NEED_DIFFUSE_LIGHT;

@@ -200,18 +200,42 @@ static void occlusion_uploads_depth_and_normals(void **state)
 }
 
 // A small sphere in the middle tile of the upper row, nothing anywhere else.
-static void empty_tiles_are_not_dispatched(void **state)
+static void write_sphere(char *path)
 {
-    (void)state;
     static scene s;
     error e = {0};
-    char path[96];
     s = (scene){.eye = v3(0, -5, 0), .target = v3(0, 0, 0), .radius = 0.2};
     scene_add_sphere(&s, v3(0.4, 0, 0.25), 0.2, v3(0.5, 0.5, 0.5));
     view v = view_perspective(WIDTH, HEIGHT, 50.0, 1.0);
     view_scene(&v, &s);
     path_of("empty.exr", path);
-    must(scene_write(&s, &v, &(scene_exr_options){.convention = "plain"}, path, &e), &e);
+    must(scene_write(&s, &v, &(scene_exr_options){.convention = "plain", .edge_samples = 3}, path, &e), &e);
+}
+
+// The beauty is what is seen behind surfaces that are relit: where they cover all, nobody looks at it.
+static void beauty_is_uploaded_where_it_is_seen(void **state)
+{
+    char path[96];
+    (void)state;
+    json_object *r = report_of_scene((scene_exr_options){0}, NULL, SKY);
+    assert_true(json_object_get_double(field(r, "valid_share")) == 1.0);
+    assert_true(uploads(r, "albedo"));
+    assert_false(uploads(r, "beauty"));
+    assert_false(uploads(r, "coverage"));
+    json_object_put(r);
+    write_sphere(path);
+    r = report_for(path, NULL, SKY);
+    assert_int_equal(bytes_of(r, "beauty"), 16 * WIDTH * HEIGHT);
+    assert_int_equal(bytes_of(r, "coverage"), 4 * WIDTH * HEIGHT);
+    json_object_put(r);
+    remove(path);
+}
+
+static void empty_tiles_are_not_dispatched(void **state)
+{
+    (void)state;
+    char path[96];
+    write_sphere(path);
     json_object *r = report_for(path, "occlusion", NULL);
     json_object *tiles = field(r, "tiles");
     assert_int_equal(json_object_get_int(field(tiles, "dispatched")), 1);
@@ -247,6 +271,7 @@ int main(void)
         cmocka_unit_test(no_albedo_no_bounce),
         cmocka_unit_test(no_environment_no_map),
         cmocka_unit_test(occlusion_uploads_depth_and_normals),
+        cmocka_unit_test(beauty_is_uploaded_where_it_is_seen),
         cmocka_unit_test(empty_tiles_are_not_dispatched),
         cmocka_unit_test(the_rest_is_there),
     };
