@@ -14,6 +14,7 @@
 #include "pipeline/frame.h"
 #include "pipeline/preview.h"
 #include "pipeline/report.h"
+#include "pipeline/resume.h"
 
 // The signal that asked us to stop: frames are dropped, but for one that is being written. SIGINT after that ends the process at
 // once; a farm repeats SIGTERM and means the same.
@@ -62,19 +63,32 @@ static bool run_frame(job *j, error *e)
     progress p;
     progress_begin(&p, o->progress, 1, j->log);
     j->progress = &p;
-    bool ok = frame_run_files(j, o->inputs, o->input_count, o->output, &r, e) &&
-              (!o->preview || preview_write(o, &r, o->preview, e)) &&
-              (!o->report || report_write(j, &r, o->output, o->report, e));
+    bool ok = frame_check_output(o->inputs, o->input_count, o->output, e);
+    const char *why = ok ? resume_skips(j, o->inputs, o->input_count, o->output) : NULL;
+    if (why) {
+        progress_line(&p, "%s: skipped, %s", o->output, why);
+        progress_finish(&p, PROGRESS_STEPS);
+    } else {
+        ok = ok && frame_run_files(j, o->inputs, o->input_count, o->output, &r, e) &&
+             (!o->preview || preview_write(o, &r, o->preview, e)) && (!o->report || report_write(j, &r, o->output, o->report, e));
+    }
     frame_free(&r);
     progress_end(&p);
     j->progress = NULL;
     return ok;
 }
 
+// What would be found wrong only when the work is done.
+static bool check_targets(const options *o, error *e)
+{
+    return outfile_check_folder(o->output, e) && (!o->preview || outfile_check_folder(o->preview, e)) &&
+           (!o->report || outfile_check_folder(o->report, e)) && preview_check(o, e);
+}
+
 static bool run(const options *o, log_t *log, error *e)
 {
     job j;
-    bool ok = job_open(&j, o, log, e) && preview_check(o, e);
+    bool ok = job_open(&j, o, log, e) && check_targets(o, e);
     j.stop = &stop_signal;
     j.no_floats = !o->preview;
     if (ok) ok = batch_is(o) ? batch_run(&j, e) : run_frame(&j, e);

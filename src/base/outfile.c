@@ -158,6 +158,15 @@ static bool report_folder(const char *path, const char *target, int code, error 
                    n ? (int)n : 1, n ? target : ".", strerror(code));
 }
 
+bool outfile_check_folder(const char *path, error *e)
+{
+    size_t n = folder_length(path);
+    char folder[PATH_MAX] = ".";
+    if (n >= sizeof folder) return true; // creating the file will say so
+    if (n) snprintf(folder, sizeof folder, "%.*s", (int)n, path);
+    return access(folder, W_OK | X_OK) == 0 || report_folder(path, path, errno, e);
+}
+
 void outfile_tidy(const char *path)
 {
     char beginning[256], *target = resolve_target(path, NULL);

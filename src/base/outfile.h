@@ -31,6 +31,10 @@ bool outfile_begin(const char *path, outfile *out, error *e);
 // Removes what a killed process left beside the target, as beginning does: for a target that is done already.
 void outfile_tidy(const char *path);
 
+// Whether the folder that the file is to be made in is there and can be written to, to be asked before long work: the error is
+// outfile_begin's.
+bool outfile_check_folder(const char *path, error *e);
+
 // Flush, close, rename. On failure the temporary file is removed. *out is spent either way.
 bool outfile_commit(outfile *out, error *e);
 

@@ -195,7 +195,7 @@ const option_row option_rows[] = {
     {.group = GROUP_RUN, .name = "missing", .argument = "error|skip", .kind = OPT_SWITCH, .offset = FIELD(missing_skip),
      .words = WORDS({"error", 0}, {"skip", 1}), .fallback = "error", .help = "What an input frame that does not exist is."},
     {.group = GROUP_RUN, .name = "skip-existing", .kind = OPT_FLAG, .offset = FIELD(skip_existing),
-     .help = "Leave out frames whose output is complete and was made by this version with the same settings."},
+     .help = "Leave out frames whose output is complete, was made by this version with the same settings, and is no older than the input, the environment and other files that it was made from."},
     {.group = GROUP_RUN, .name = "keep-going", .kind = OPT_FLAG, .offset = FIELD(keep_going),
      .help = "Go on with the next frame when one fails. The exit status is 1 in the end, and the frames that failed are listed."},
     {.group = GROUP_RUN, .name = "radius-from", .argument = "FRAME", .kind = OPT_INT, .offset = FIELD(radius_from),

@@ -27,11 +27,16 @@ static const char *view_by_name(const exr_part *p, const char *name)
     return NULL;
 }
 
+void exr_free_views(exr_part *p)
+{
+    for (int v = 0; v < p->view_count; v++) free(p->views[v]);
+    p->view_count = 0;
+}
+
 static void forget_views(exr_part *p)
 {
     for (int c = 0; c < p->channel_count; c++) p->channels[c].view = NULL;
-    for (int v = 0; v < p->view_count; v++) free(p->views[v]);
-    p->view_count = 0;
+    exr_free_views(p);
 }
 
 static int views_with_channels(const exr_part *p)
@@ -60,12 +65,6 @@ bool exr_fill_views(const exr_file *file, int index, exr_part *p, error *e)
     // The attribute travels with pictures that are no longer stereo.
     if (views_with_channels(p) < 2) forget_views(p);
     return true;
-}
-
-void exr_free_views(exr_part *p)
-{
-    for (int v = 0; v < p->view_count; v++) free(p->views[v]);
-    p->view_count = 0;
 }
 
 void exr_name_without_view(const exr_channel *c, char *out, size_t size)

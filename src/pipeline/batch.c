@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include "base/mem.h"
-#include "base/outfile.h"
 #include "cli/frames.h"
 #include "exr/write.h"
 #include "pipeline/inputs.h"
@@ -106,14 +105,11 @@ static void read_slot(batch *b, slot *s, int frame)
         return;
     }
     if (!frame_check_output(s->inputs.list, s->inputs.count, s->output, &s->error)) return;
-    if (o->missing_skip && !inputs_exist(&s->inputs)) {
-        skip(s, "the input is missing");
-    } else if (o->skip_existing && resume_is_done(b->j, s->output)) {
-        outfile_tidy(s->output);
-        skip(s, "already done");
-    } else {
-        if (frame_read_files(b->j, s->inputs.list, s->inputs.count, &s->result, &s->error)) step(b, s);
-    }
+    const char *why = resume_skips(b->j, s->inputs.list, s->inputs.count, s->output);
+    if (why)
+        skip(s, why);
+    else if (frame_read_files(b->j, s->inputs.list, s->inputs.count, &s->result, &s->error))
+        step(b, s);
 }
 
 static void read_one(batch *b, int i)

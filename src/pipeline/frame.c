@@ -40,6 +40,8 @@ static void lap(frame_result *r, stage s, stopwatch *since)
 bool job_open(job *j, const options *o, log_t *log, error *e)
 {
     *j = (job){.o = o, .log = log, .threads = o->threads > 0 ? o->threads : threads_default()};
+    if (!colour_config(o->ocio))
+        log_info(log, "colour: no OpenColorIO config, so beauty, albedo and environment count as linear");
     return gpu_open(&j->g, o->device, log, e);
 }
 

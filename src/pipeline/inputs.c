@@ -2,7 +2,6 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/frames.h"
 
@@ -18,12 +17,5 @@ bool inputs_of_frame(const options *o, int frame, input_paths *out)
         if (!fits) return false;
         out->list[i] = out->room[i];
     }
-    return true;
-}
-
-bool inputs_exist(const input_paths *in)
-{
-    for (int i = 0; i < in->count; i++)
-        if (access(in->list[i], F_OK) != 0) return false;
     return true;
 }

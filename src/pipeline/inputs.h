@@ -15,7 +15,4 @@ typedef struct input_paths {
 // A name without a place for the frame is the same file in every frame. False if a path does not fit.
 bool inputs_of_frame(const options *o, int frame, input_paths *out);
 
-// True if none is missing.
-bool inputs_exist(const input_paths *in);
-
 #endif

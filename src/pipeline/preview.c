@@ -176,7 +176,8 @@ static void draw_legend(sheet *s, const frame_result *r, int y, int width, const
     const camera *c = &r->gb.camera;
     double pixels = r->set.radius * c->fx / (c->kind == CAMERA_ORTHOGRAPHIC ? 1.0 : frame_median_depth(&r->gb));
     int length = (int)lrint(fmin(pixels * z->enlarge / z->reduce, 1e6)), x = GAP;
-    snprintf(text, sizeof text, "radius %.3g = %.0f px", r->set.radius, pixels);
+    snprintf(text, sizeof text, "radius %.3g = %.0f px%s%.24s", r->set.radius, pixels, r->view ? ", view " : "",
+             r->view ? r->view : "");
     sheet_text(s, x, y + (LABEL - SHEET_TEXT_HEIGHT) / 2, text);
     y += LABEL;
     bool whole = length <= width; // otherwise the bar has no right end

@@ -1,7 +1,11 @@
 #include "pipeline/resume.h"
 
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+#include "base/outfile.h"
+#include "cli/frames.h"
 
 static bool made_like_this(const job *j, const exr_file *f, int part)
 {
@@ -35,7 +39,35 @@ void resume_check_device(const job *j, const char *output)
     exr_file_close(f);
 }
 
-bool resume_is_done(const job *j, const char *output)
+// A file that the frame is made of has changed since.
+static bool is_newer(const char *path, const struct stat *output)
+{
+    struct stat s;
+    if (!path || pattern_is(path) || stat(path, &s) != 0) return false;
+    if (s.st_mtim.tv_sec != output->st_mtim.tv_sec) return s.st_mtim.tv_sec > output->st_mtim.tv_sec;
+    return s.st_mtim.tv_nsec > output->st_mtim.tv_nsec;
+}
+
+static bool is_outdated(const options *o, const char *const *inputs, int count, const char *output)
+{
+    const char *const others[] = {o->env, o->mesh, o->proxies, o->camera_file};
+    struct stat s;
+    if (stat(output, &s) != 0) return true;
+    for (int i = 0; i < count; i++)
+        if (is_newer(inputs[i], &s)) return true;
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (is_newer(others[i], &s)) return true;
+    return false;
+}
+
+static bool exist(const char *const *paths, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (access(paths[i], F_OK) != 0) return false;
+    return true;
+}
+
+static bool is_done(const job *j, const char *output)
 {
     exr_file *f = NULL;
     error ignored = {0};
@@ -49,4 +81,13 @@ bool resume_is_done(const job *j, const char *output)
     for (int p = 0; ours && p < f->part_count; p++) warn_device(j, f, p);
     exr_file_close(f);
     return ours;
+}
+
+const char *resume_skips(const job *j, const char *const *inputs, int count, const char *output)
+{
+    const options *o = j->o;
+    if (o->missing_skip && !exist(inputs, count)) return "the input is missing";
+    if (!o->skip_existing || is_outdated(o, inputs, count, output) || !is_done(j, output)) return NULL;
+    outfile_tidy(output);
+    return "already done";
 }

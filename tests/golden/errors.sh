@@ -44,6 +44,8 @@ unset SSDO_MEMORY
 expect 3 "albedo" "$dir/noalbedo.exr" -o "$dir/out.exr" --layers indirect
 expect 3 "'roughness'" "$sample" -o "$dir/out.exr" --layers specular --env samples/sky_soft.exr
 expect 4 "no/such/folder" "$sample" -o "$dir/no/such/folder/out.exr"
+expect 4 "no/such/folder" "$sample" -o "$dir/out.exr" --preview "$dir/no/such/folder/out.png"
+expect 4 "no/such/folder" "$sample" -o "$dir/out.exr" --report "$dir/no/such/folder/out.json"
 expect 2 "--radius" "$sample" -o "$dir/out.exr" --radius tiny
 expect 2 "there is no layer" "$sample" -o "$dir/out.exr" --layers occlusoin
 expect 2 "there is no method" "$sample" -o "$dir/out.exr" --method magic

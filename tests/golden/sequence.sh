@@ -45,6 +45,15 @@ head -c 30000 "$dir/a/f.0001.exr" >"$dir/c/f.0001.exr"
 "$SSDO" -q "$dir/in/f.####.exr" -o "$dir/c/f.####.exr" --skip-existing || die "repairing"
 cmp "$dir/a/f.0001.exr" "$dir/c/f.0001.exr" || die "a truncated output was kept"
 
+# An input that was rendered again is filtered again; a single frame knows --skip-existing and --missing, too.
+touch "$dir/in/f.0002.exr"
+"$SSDO" "$dir/in/f.####.exr" -o "$dir/c/f.####.exr" --skip-existing --frames 1-2 >"$dir/log" 2>/dev/null || die "a newer input"
+[ "$(grep skipped "$dir/log")" = "frame 1 (1 of 2): skipped, already done" ] || die "a newer input: $(cat "$dir/log")"
+"$SSDO" -q "$dir/in/f.0001.exr" -o "$dir/one.exr" --samples 4 || die "one frame"
+[ "$("$SSDO" "$dir/in/f.0001.exr" -o "$dir/one.exr" --samples 4 --skip-existing)" = "$dir/one.exr: skipped, already done" ] || die "one frame was made again"
+[ -z "$("$SSDO" "$dir/in/f.0001.exr" -o "$dir/one.exr" --samples 8 --skip-existing 2>/dev/null)" ] || die "one frame with other settings was left out"
+[ "$("$SSDO" "$dir/in/f.9999.exr" -o "$dir/two.exr" --missing skip)" = "$dir/two.exr: skipped, the input is missing" ] || die "--missing skip of one frame"
+
 # A bad frame among good ones.
 head -c 20000 "$dir/in/f.0003.exr" >"$dir/in/bad" && mv "$dir/in/bad" "$dir/in/f.0003.exr"
 rm -rf "$dir/b" && mkdir "$dir/b"
