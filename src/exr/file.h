@@ -76,7 +76,7 @@ bool exr_file_open_all(const char *const *paths, int count, exr_file **out, erro
 // The file that a part comes from: `file` itself unless it was put together. *part becomes its number there.
 const exr_file *exr_part_file(const exr_file *file, int *part);
 
-// The channel's name without its view: "layer.R" of "layer.right.R".
+// The channel's name without its view: "layer.R" of "layer.right.R" (or of "right.layer.R").
 void exr_name_without_view(const exr_channel *c, char *out, size_t size);
 // The way back, by OpenEXR's rule: the view stands before the component, but a name of one word stays so in the default view.
 void exr_name_with_view(const char *name, const char *view, bool is_default, char *out, size_t size);

@@ -6,25 +6,26 @@
 #include "base/mem.h"
 #include "exr/internal.h"
 
-// The view's word of a name ("right" in "layer.right.R"), as long as *length; NULL in a name without a dot.
-static const char *view_word(const char *name, size_t *length)
+// Where the view's word is in a name, the component apart, and the last place if there are several: OpenEXR puts it before the
+// component (layer.right.R), some writers put it in front (right.layer.R). NULL if nowhere.
+static const char *view_word(const char *name, const char *view)
 {
-    const char *end = strrchr(name, '.'), *start = end;
-    if (!end) return NULL;
-    while (start > name && start[-1] != '.') start--;
-    *length = (size_t)(end - start);
-    return start;
+    size_t n = strlen(view);
+    const char *found = NULL;
+    for (const char *word = name, *dot; (dot = strchr(word, '.')); word = dot + 1)
+        if ((size_t)(dot - word) == n && strncmp(word, view, n) == 0) found = word;
+    return found;
 }
 
-// OpenEXR's rule: the word before the component; a name of one word is the default view's, all others are nobody's own.
+// A name of one word is the default view's; one of several without a view's word is nobody's own.
 static const char *view_by_name(const exr_part *p, const char *name)
 {
-    size_t length;
-    const char *word = view_word(name, &length);
-    if (!word) return p->views[0];
-    for (int v = 0; v < p->view_count; v++)
-        if (strlen(p->views[v]) == length && strncmp(word, p->views[v], length) == 0) return p->views[v];
-    return NULL;
+    const char *best = NULL, *view = strchr(name, '.') ? NULL : p->views[0];
+    for (int v = 0; v < p->view_count; v++) {
+        const char *word = view_word(name, p->views[v]);
+        if (word && (!best || word > best)) best = word, view = p->views[v];
+    }
+    return view;
 }
 
 void exr_free_views(exr_part *p)
@@ -69,10 +70,9 @@ bool exr_fill_views(const exr_file *file, int index, exr_part *p, error *e)
 
 void exr_name_without_view(const exr_channel *c, char *out, size_t size)
 {
-    size_t length = 0;
-    const char *word = c->view ? view_word(c->name, &length) : NULL;
+    const char *word = c->view ? view_word(c->name, c->view) : NULL;
     if (word)
-        snprintf(out, size, "%.*s%s", (int)(word - c->name), c->name, word + length + 1);
+        snprintf(out, size, "%.*s%s", (int)(word - c->name), c->name, word + strlen(c->view) + 1);
     else
         snprintf(out, size, "%s", c->name);
 }

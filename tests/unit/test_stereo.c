@@ -101,9 +101,12 @@ static void write_stereo(const char *path, bool part_per_layer)
     for (int i = 0; i < EYES; i++) exr_file_close(files[i]);
 }
 
-// Both eyes in one part, told apart by names: P.right.X, right.R; the left eye's are P.left.X and R, or P.X where it is left
-// bare.
-static void write_names(const char *path, bool bare)
+// How names tell the eyes apart: P.left.X and P.right.X; the left one without its name, P.X; in front, left.P.X and right.P.X. R
+// is the left eye's and right.R the other's in any case.
+typedef enum naming { BEFORE_COMPONENT, LEFT_BARE, IN_FRONT, NAMINGS } naming;
+
+// Both eyes in one part.
+static void write_names(const char *path, naming how)
 {
     exr_out_channel channels[EYES * 16];
     static char names[EYES * 16][64];
@@ -121,8 +124,10 @@ static void write_names(const char *path, bool bare)
             const exr_channel *ch = &from->channels[c];
             const char *dot = strrchr(ch->name, '.');
             char *name = names[part.channel_count];
-            if (i == 0 && (bare || !dot))
+            if (i == 0 && (how == LEFT_BARE || !dot))
                 snprintf(name, sizeof *names, "%s", ch->name);
+            else if (how == IN_FRONT)
+                snprintf(name, sizeof *names, "%s.%s", eyes[i], ch->name);
             else
                 snprintf(name, sizeof *names, "%.*s%s.%s", dot ? (int)(dot + 1 - ch->name) : 0, ch->name, eyes[i],
                          dot ? dot + 1 : ch->name);
@@ -234,8 +239,8 @@ static int has(const exr_file *f, const char *name) { return channel_count(f, ""
 // The views are in the names: so are ours, in the one part, by OpenEXR's rule. A second run replaces them.
 static void views_in_names(void **state)
 {
-    static const char *const want[] = {"occlusion.left.R", "occlusion.right.R", "radiance.left.G",  "radiance.right.G",
-                                       "composite.left.A", "composite.right.A", "indirect.right.B", "P.right.X"};
+    static const char *const want[] = {"occlusion.left.R", "occlusion.right.R", "radiance.left.G", "radiance.right.G",
+                                       "composite.left.A", "composite.right.A", "indirect.right.B"};
     char in[300], out[300], again[300];
     const char *text;
     error e = {0};
@@ -245,8 +250,9 @@ static void views_in_names(void **state)
     snprintf(out, sizeof out, "%s/out.exr", folder);
     snprintf(again, sizeof again, "%s/again.exr", folder);
     settings.multipart = false;
-    for (int bare = 0; bare < 2; bare++) {
-        write_names(in, bare);
+    for (naming how = BEFORE_COMPONENT; how < NAMINGS; how++) {
+        static const char *const left_x[NAMINGS] = {"P.left.X", "P.X", "left.P.X"};
+        write_names(in, how);
         filter_both(in, out);
         filter_both(out, again);
         must(exr_file_open(again, &f, &e), &e);
@@ -254,8 +260,9 @@ static void views_in_names(void **state)
         assert_string_equal(f->parts[0].view, "");
         assert_int_equal(f->parts[0].view_count, EYES);
         assert_int_equal(f->parts[0].channel_count, EYES * (14 + 11));
-        for (int i = 0; i < 8; i++) assert_int_equal(has(f, want[i]), 1);
-        assert_int_equal(has(f, bare ? "P.X" : "P.left.X"), 1);
+        for (size_t i = 0; i < sizeof want / sizeof *want; i++) assert_int_equal(has(f, want[i]), 1);
+        assert_int_equal(has(f, left_x[how]), 1);
+        assert_int_equal(has(f, how == IN_FRONT ? "right.P.X" : "P.right.X"), 1);
         assert_true(exr_attr_string(f, 0, "ssdo/camera", &text) && exr_attr_string(f, 0, "ssdo/camera.right", &text));
         exr_file_close(f);
     }
@@ -271,7 +278,7 @@ static void views_in_names_otherwise(void **state)
     (void)state;
     snprintf(in, sizeof in, "%s/names.exr", folder);
     snprintf(out, sizeof out, "%s/out.exr", folder);
-    write_names(in, false);
+    write_names(in, BEFORE_COMPONENT);
     settings.multipart = true;
     filter_both(in, out);
     must(exr_file_open(out, &f, &e), &e);
