@@ -33,6 +33,19 @@ oiiotool --diff --fail 0.001 "$dir/rebuilt.exr" "$dir/composite.exr" >"$dir/log"
 echo "ok      Blender: sockets $sockets"
 echo "ok      Blender: DiffCol * (radiance + indirect) is the composite,$(sed -n 's/ *Max error/ greatest difference/p' "$dir/log" | sed 's/ @.*//')"
 
+# ---- Blender's own stereo file, one part: each eye filtered with its own camera, and read again as stereo.
+stereo() { blender -b --factory-startup -P tests/hosts/stereo.py -- "$1" "$2" >"$dir/log" 2>&1; }
+stereo render "$dir/eyes.exr" && [ -s "$dir/eyes.exr" ] || die "Blender renders no stereo: $(tail "$dir/log")"
+"$SSDO" -q "$dir/eyes.exr" -o "$dir/both.exr" --prefix $V. --env samples/sky_soft.exr || die "ssdo-filter with two eyes"
+stereo show "$dir/both.exr" && sockets=$(sed -n 's/^SOCKETS stereo //p' "$dir/log")
+for layer in occlusion radiance indirect composite; do
+    case ,$sockets, in *,$layer,*) ;; *) die "Blender shows no stereo socket '$layer': $(grep SOCKETS "$dir/log")" ;; esac
+done
+exrheader "$dir/both.exr" >"$dir/log"
+[ "$(grep -c "$V.occlusion.\(left\|right\).R" "$dir/log")" = 2 ] || die "not an occlusion for each eye: $(cat "$dir/log")"
+[ "$(sed -n 's/^ssdo.camera.*centre \([0-9.]*\) .*source fit"$/\1/p' "$dir/log" | sort -u | wc -l)" = 2 ] || die "the eyes' cameras: $(grep ssdo.camera "$dir/log")"
+echo "ok      Blender: its stereo file is filtered eye by eye and comes back as stereo"
+
 # ---- oiiotool: all channels and our attributes survive, and a run on the copy gives our layers again.
 "$SSDO" -q samples/still.exr -o "$dir/out.exr" --env samples/sky_soft.exr --main composite || die "ssdo-filter"
 oiiotool "$dir/out.exr" -o "$dir/oiio.exr" || die "oiiotool"
