@@ -98,12 +98,6 @@ static bool average(const frame_result *r, layer_id l, int x0, int y0, int size,
 
 static uint8_t share(float v) { return (uint8_t)lrintf(255.0f * fminf(1.0f, fmaxf(0.0f, v))); }
 
-static float decode(uint8_t code)
-{
-    float v = (float)code / 255.0f;
-    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
-}
-
 static bool is_light(layer_id l) { return layer_table[l].channels[1] && !is_signed(l) && l != LAYER_DEPTHMASK; }
 
 // What is no light, as a code.
@@ -141,35 +135,37 @@ static bool develop(const options *o, const frame_result *r, float *rgb, size_t 
     return true;
 }
 
-// One cell: its dots as linear light or, for other layers, as codes already; then all of them onto the sheet.
+// One cell: its dots as linear light without alpha or, for other layers, as codes already; then all of them onto the sheet.
 static bool draw_layer(sheet *s, const options *o, const frame_result *r, layer_id l, int x0, int y0, const zoom *z, float gain,
                        error *e)
 {
     size_t n = (size_t)z->width * (size_t)z->height;
-    float *rgb = mem_pixels(n, 3 * sizeof *rgb, e);
+    float *rgb = mem_pixels(n, 4 * sizeof *rgb, e), *open = rgb ? rgb + 3 * n : NULL;
     if (!rgb) return false;
     for (size_t i = 0; i < n; i++) {
         int x = (int)(i % (size_t)z->width), y = (int)(i / (size_t)z->width);
         dot d;
         bool any = average(r, l, x / z->enlarge * z->reduce, y / z->enlarge * z->reduce, z->reduce, &d);
-        uint8_t checker = sheet_checker(x, y);
-        for (int k = 0; k < 3; k++) {
-            float light = any ? gain * d.v[k] + d.open * decode(checker) : decode(checker);
-            rgb[3 * i + (size_t)k] = is_light(l) ? light : (float)(any ? shade(l, &d, k) : checker) / 255.0f;
-        }
+        bool glow = d.open >= 1.0f && d.v[0] + d.v[1] + d.v[2] > 0.0f; // light without alpha is shown whole
+        open[i] = !any ? 1.0f : glow ? 0.0f : d.open;
+        float part = open[i] < 1.0f ? 1.0f - open[i] : 1.0f;
+        for (int k = 0; k < 3; k++) rgb[3 * i + (size_t)k] = is_light(l) ? gain * d.v[k] / part : (float)shade(l, &d, k) / 255.0f;
     }
     bool ok = !is_light(l) || develop(o, r, rgb, n, e);
+    // The checkerboard goes through no view: it looks the same everywhere, also in the legend.
     for (size_t i = 0; ok && i < n; i++) {
-        const float *v = rgb + 3 * i;
-        uint8_t c[3] = {share(v[0]), share(v[1]), share(v[2])};
-        sheet_put(s, x0 + (int)(i % (size_t)z->width), y0 + (int)(i / (size_t)z->width), c);
+        int x = (int)(i % (size_t)z->width), y = (int)(i / (size_t)z->width);
+        float checker = (float)sheet_checker(x, y) / 255.0f;
+        uint8_t c[3];
+        for (size_t k = 0; k < 3; k++) c[k] = share((1.0f - open[i]) * rgb[3 * i + k] + open[i] * checker);
+        sheet_put(s, x0 + x, y0 + y, c);
     }
     free(rgb);
     return ok;
 }
 
-// The radius and its length in the cells; the checkerboard. Below `y`, over `width` columns.
-static void draw_legend(sheet *s, const frame_result *r, int y, int width, const zoom *z)
+// The radius and its length in the cells; the checkerboard; what light went through. Below `y`, over `width` columns.
+static void draw_legend(sheet *s, const options *o, const frame_result *r, int y, int width, const zoom *z)
 {
     static const uint8_t ink[3] = {235, 235, 235};
     char text[96];
@@ -191,6 +187,10 @@ static void draw_legend(sheet *s, const frame_result *r, int y, int width, const
         sheet_put(s, x + i % 32, y + i / 32, (uint8_t[3]){v, v, v});
     }
     sheet_text(s, x + 32 + SHEET_LETTER, y + 1, "no surface");
+    if (!has_display(o)) return;
+    snprintf(text, sizeof text, "light: view %.24s%s%.24s", o->view ? o->view : "default", o->display ? ", display " : "",
+             o->display ? o->display : "");
+    sheet_text(s, x, y + LABEL, text);
 }
 
 bool preview_write(const options *o, const frame_result *r, const char *path, error *e)
@@ -201,7 +201,7 @@ bool preview_write(const options *o, const frame_result *r, const char *path, er
     int columns = cells < COLUMNS ? cells : COLUMNS, rows = (cells + COLUMNS - 1) / COLUMNS;
     int below = rows * (z.height + LABEL + GAP) + GAP;
     sheet s;
-    if (!sheet_make(&s, columns * (z.width + GAP) + GAP, below + 3 * LABEL, BACKGROUND, e)) return false;
+    if (!sheet_make(&s, columns * (z.width + GAP) + GAP, below + (has_display(o) ? 4 : 3) * LABEL, BACKGROUND, e)) return false;
     bool ok = true;
     for (int l = 0, cell = 0; ok && l < LAYER_COUNT; l++) {
         if (!r->layers[l]) continue;
@@ -213,7 +213,7 @@ bool preview_write(const options *o, const frame_result *r, const char *path, er
         ok = draw_layer(&s, o, r, (layer_id)l, x, y + LABEL, &z, gain, e);
         cell++;
     }
-    draw_legend(&s, r, below, columns * (z.width + GAP) - GAP, &z);
+    draw_legend(&s, o, r, below, columns * (z.width + GAP) - GAP, &z);
     ok = ok && images_write_png(path, s.width, s.height, s.rgb, e);
     sheet_free(&s);
     return ok;

@@ -1,5 +1,6 @@
 #include "pipeline/sheet.h"
 
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -63,10 +64,12 @@ void sheet_fill(sheet *s, int x, int y, int width, int height, const uint8_t col
 void sheet_text(sheet *s, int x, int y, const char *text)
 {
     static const uint8_t ink[3] = {235, 235, 235};
-    for (; *text; text++, x += SHEET_LETTER)
+    for (; *text; text++, x += SHEET_LETTER) {
+        const unsigned char *rows = font[tolower(*text & 127)];
         for (int r = 0; r < GLYPH_H; r++)
             for (int c = 0; c < GLYPH_W; c++)
-                if (font[*text & 127][r] >> (GLYPH_W - 1 - c) & 1) sheet_fill(s, x + c * ZOOM, y + r * ZOOM, ZOOM, ZOOM, ink);
+                if (rows[r] >> (GLYPH_W - 1 - c) & 1) sheet_fill(s, x + c * ZOOM, y + r * ZOOM, ZOOM, ZOOM, ink);
+    }
 }
 
 uint8_t sheet_checker(int x, int y) { return (x / SQUARE + y / SQUARE) & 1 ? 72 : 104; }

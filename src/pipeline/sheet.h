@@ -23,7 +23,8 @@ void sheet_free(sheet *s);
 // What lies outside the sheet is not drawn, here and below.
 void sheet_put(sheet *s, int x, int y, const uint8_t colour[3]);
 void sheet_fill(sheet *s, int x, int y, int width, int height, const uint8_t colour[3]);
-// Letters a-z, digits and . - + = _ , : ( ), twice the size of their pattern so that they can be read at 100 %; others are gaps.
+// Letters (all drawn as small ones), digits and . - + = _ , : ( ), twice the size of their pattern so that they can be read at
+// 100 %; others are gaps.
 void sheet_text(sheet *s, int x, int y, const char *text);
 
 // The grey of the checkerboard that stands for "no surface" at a place of the sheet.
