@@ -175,6 +175,9 @@ $(BUILD)/bench-program: $(BENCH_OBJ) $(TESTLIB) $(BUILD)/libssdo.a
 # What ssdo's light and bounce cost over its occlusion, beside the paper's figures; s3ho over hemisphere.
 $(BUILD)/bench-paper: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/paper.o $(TESTLIB) $(BUILD)/libssdo.a
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lembree3 $(PKG_LIBS)
+# The errors of arc's budgets, for bench-frame.
+$(BUILD)/bench-curve: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/curve.o $(TESTLIB) $(BUILD)/libssdo.a
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lembree3 $(PKG_LIBS)
 .PHONY: bench-paper
 bench-paper: deps-bench
 	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench-paper
@@ -215,7 +218,7 @@ truth: deps-check
 .PHONY: bench-frame
 bench-frame: deps-bench
 	@$(MAKE) $(JOBS) --no-print-directory all $(BUILD)/tests/bench/make_input $(BUILD)/tests/bench/measure $(BUILD)/tests/bench/core_copy \
-	    $(BUILD)/tests/bench/own_copy
+	    $(BUILD)/tests/bench/own_copy $(BUILD)/bench-curve
 	@sh tests/bench/frame.sh $(BUILD) $(ROUNDS)
 
 # Puts the last bench-frame's tables into README.md, between the marks.

@@ -138,7 +138,7 @@ static bool list_views(const job *j, frame_result *r, error *e)
 // with 13 channels and four layers, images of a software renderer included.
 static bool fits(const job *j, const frame_result *r, error *e)
 {
-    const double bytes = j->g.software ? 300.0 : 200.0, gib = 1024.0 * 1024.0 * 1024.0;
+    const double bytes = j->g.software ? 230.0 : 200.0, gib = 1024.0 * 1024.0 * 1024.0;
     const box2 w = r->file->parts[r->resolution.main_part].data_window;
     int width = w.x1 - w.x0 + 1, height = w.y1 - w.y0 + 1;
     double needed = bytes * width * height, available = (double)mem_available();

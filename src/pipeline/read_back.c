@@ -91,7 +91,7 @@ static bool make_room(const job *j, layer_id l, frame_result *r, error *e)
     size_t pixels = (size_t)r->gb.width * (size_t)r->gb.height, channels = strlen(layer_table[l].channels);
     r->types[l] = type_of(j, r, l);
     for (size_t k = 0; k < channels; k++)
-        if (!(r->samples[l][k] = mem_pixels(pixels, sample_size(r->types[l]), e))) return false;
+        if (!r->samples[l][k] && !(r->samples[l][k] = mem_pixels(pixels, sample_size(r->types[l]), e))) return false;
     return j->no_floats || (r->layers[l] = mem_pixels(pixels * channels, sizeof(float), e));
 }
 

@@ -15,6 +15,7 @@ env=samples/sky_soft.exr
 mkdir -p "$dir/sequence"
 out=$build/bench/frame.md
 ratios=$dir/ratios
+curve=$dir/curve.tsv
 
 input() { # WIDTHxHEIGHT: its path, made if need be
     [ -e "$dir/$1.exr" ] || "$tools/make_input" "${1%x*}" "${1#*x}" "$dir/$1.exr" >&2
@@ -42,7 +43,8 @@ $bin -q "$in" -o "$dir/out.exr" --env $env --quality draft
     "four layers, standard" "$(filter --quality standard)" \
     "four layers, draft, multipart" "$(filter --quality draft --layout multipart)" \
     "four layers, standard, multipart" "$(filter --quality standard --layout multipart)" \
-    "occlusion only, keep none, draft" "$(filter --quality draft --layers occlusion --keep none)" >"$dir/main.tsv"
+    "occlusion only, keep none, draft" "$(filter --quality draft --layers occlusion --keep none)" \
+    "version" "$bin --version >$dir/null" "help" "$bin --help >$dir/null" >"$dir/main.tsv"
 ratio "$dir/main.tsv" "four layers, draft" "1.0"
 ratio "$dir/main.tsv" "four layers, standard" "1.6"
 ratio "$dir/main.tsv" "four layers, draft, multipart" "0.7"
@@ -60,10 +62,21 @@ median() { sort -n | awk '{ v[NR] = $1 } END { printf "%.2f", v[int((NR + 1) / 2
 echo "| decode of the input, CPU over the library's | $(awk '{ print $1 / $3 }' "$dir/codec" | median) | 0.5 |" >>"$ratios"
 echo "| encode of the new layers, CPU over the library's | $(awk '{ print $6 / $8 }' "$dir/codec" | median) | 0.3 |" >>"$ratios"
 
+# What accuracy costs: the whole job at several budgets, and the errors that the same settings have on the samples. A draft is 16
+# samples at half resolution, the default 64 at full.
+"$build/bench-curve" >"$dir/errors.tsv"
+set -- "oiiotool copy" "oiiotool $in -o $dir/copy.exr"
+while read -r samples resolution _; do
+    set -- "$@" "$samples $resolution" "$(filter --samples "$samples" --resolution "$resolution")"
+done <"$dir/errors.tsv"
+"$tools/measure" 1 "$@" >"$curve"
+
 # A batch: the same frame under many names.
 for i in $(seq "$frames"); do ln -sf "../$size.exr" "$dir/sequence/in.$(printf %04d "$i").exr"; done
 batch() { echo "$bin -q $dir/sequence/in.####.exr -o $dir/sequence/out.####.exr --env $env --quality draft --frames 1-$1"; }
-"$tools/measure" 1 "five" "$(batch 5)" "all" "$(batch "$frames")" >"$dir/batch.tsv"
+# How far the frames in flight overlap is chance, and a longer batch has more chances; so the short one has several.
+"$tools/measure" 3 "five" "$(batch 5)" >"$dir/batch.tsv"
+"$tools/measure" 1 "all" "$(batch "$frames")" >>"$dir/batch.tsv"
 awk -F '\t' -v n="$frames" '$1 == "five" { peak = $5 }
     $1 == "all" {
         printf "| batch of %d, wall over CPU | %.2f | 0.6 |\n", n, $3 / $2
@@ -82,11 +95,17 @@ fi
 {
     echo "| size | command | CPU ms | wall ms | CPU, x oiiotool | CPU spread % | peak MiB |"
     echo "| --- | --- | ---: | ---: | ---: | ---: | ---: |"
-    rows "$size" "$dir/main.tsv"
+    rows "$size" "$dir/main.tsv" | grep -v "| version \|| help "
     if [ -n "$big" ]; then rows "$big" "$dir/big.tsv"; fi
     echo
     echo "| ratio | measured | target |"
     echo "| --- | ---: | ---: |"
     cat "$ratios"
+    awk -F '\t' '$1 == "version" || $1 == "help" { printf "| `--%s`, CPU ms | %s | 5 |\n", $1, $2 }' "$dir/main.tsv"
+    echo
+    echo "| samples | resolution | whole job, CPU, x oiiotool | occlusion, rmse | radiance, relative | indirect, relative |"
+    echo "| ---: | --- | ---: | ---: | ---: | ---: |"
+    awk -F '\t' 'NR == FNR { if (FNR == 1) base = $2; else cpu[$1] = $2 / base; next }
+        { printf "| %s | %s | %.2f | %s | %s | %s |\n", $1, $2, cpu[$1 " " $2], $3, $4, $5 }' "$curve" "$dir/errors.tsv"
 } >"$out"
 cat "$out"

@@ -57,6 +57,9 @@ bool rig_run(rig *r, const gbuffer *gb, const method *m, const pass_settings *se
 
 void rig_free_result(frame_result *r)
 {
-    for (int i = 0; i < LAYER_COUNT; i++) free(r->layers[i]);
+    for (int i = 0; i < LAYER_COUNT; i++) {
+        free(r->layers[i]);
+        for (int k = 0; k < LAYER_CHANNELS; k++) free(r->samples[i][k]);
+    }
     *r = (frame_result){0};
 }
