@@ -101,7 +101,7 @@ static bool warm_up(rig *r, const bench_results *b, const bench_scene *s, error 
         if (row.kind != ROW_METHOD || row.once || !bench_runs(&row, s) || (row.samples != 8 && !row.standard)) continue;
         row.samples = 8;
         if (!run_once(r, s, &row, bench_layers(&row), NULL, NULL, e) ||
-            !run_once(r, s, &row, 1 << LAYER_OCCLUSION, NULL, NULL, e))
+            !run_once(r, s, &row, 1u << LAYER_OCCLUSION | row.extra, NULL, NULL, e))
             return false;
     }
     return true;
@@ -117,7 +117,7 @@ static bool tells_both(const bench_row *row)
 // The first round also measures the errors. The long rows, and what costs a march of its own for light, are timed only there.
 static bool do_row(rig *r, const bench_scene *s, const bench_row *row, bench_cell *cell, int round, const char *cache, error *e)
 {
-    const unsigned occlusion = 1u << LAYER_OCCLUSION;
+    const unsigned occlusion = 1u << LAYER_OCCLUSION | row->extra;
     if (!bench_runs(row, s)) return true;
     if (round == 0) {
         if (!bench_measure(r, s, row, cache, cell, e)) return false;

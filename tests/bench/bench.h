@@ -66,6 +66,10 @@ typedef struct bench_row {
     double scale, contrast; // 1
     bool no_planes, half;   // --planes off, --resolution half
     int sh_bands;           // of s3ho; 0 as 2
+    double sh_sigma;        // of s3ho
+    bool relit;             // --from-sh: the coefficients are there, as half
+    double radius;          // 0: the scene's
+    unsigned extra;         // layers that are made and timed besides
     const char *bounce;     // NULL: the method's own
     int lights;             // of the bounce vpl
     bool middle, proxies;   // only the middle third of the picture; with spheres for what stands beside it
@@ -73,6 +77,9 @@ typedef struct bench_row {
     bool once;              // timed in the first round only
     bool standard;          // the method's own defaults: a row of the short table
 } bench_row;
+
+// Estimates the whole picture from its surfaces: comparable in error and time with the others.
+static inline bool bench_competes(const bench_row *r) { return r->kind == ROW_METHOD && !r->relit && !r->middle; }
 
 // Share and contrast of Alchemy with the lowest root mean square over the scenes, by a fixed grid.
 bool bench_fit_alchemy(rig *r, const bench_scene *scenes, int count, double *scale, double *contrast, error *e);

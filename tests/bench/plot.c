@@ -21,7 +21,7 @@ static double time_of(const bench_summary *s, panel p) { return p == PANEL_OCCLU
 
 static bool drawn(const bench_row *row, const bench_summary *s, panel p)
 {
-    return row->kind == ROW_METHOD && isfinite(error_of(s, p)) && isfinite(time_of(s, p));
+    return bench_competes(row) && isfinite(error_of(s, p)) && isfinite(time_of(s, p));
 }
 
 // One colour a method; its variants share it. Rows with blur are a curve of their own.

@@ -10,24 +10,28 @@ static const int budgets[] = {8, 16, 32, 64, 128, 256};
 enum { BUDGETS = sizeof budgets / sizeof *budgets, CONVERGED = 1024 };
 
 // Rows besides a method's own: the same shader under another setting, at every second budget and at the method's defaults; with
-// `defaults` only there. `converged`: at 1024 samples as well.
+// `defaults` only there. `converged`: at 1024 samples as well. What is 0 in `set` is as the method has it.
 typedef struct variant {
     const char *method, *suffix;
-    double thickness; // share of the radius; 0 the method's own
-    bool no_planes;
-    const char *bounce;
-    int lights;
-    bool defaults, converged, middle, proxies;
+    bool defaults, converged;
+    bench_row set;
 } variant;
 
 static const variant variants[] = {
-    {.method = "ssdo", .suffix = ", no thickness", .thickness = INFINITY},
-    {.method = "arc", .suffix = ", no planes", .no_planes = true, .converged = true},
-    {.method = "arc", .suffix = ", bounce vpl 64", .bounce = "vpl", .lights = 64, .defaults = true},
-    {.method = "arc", .suffix = ", bounce vpl 256", .bounce = "vpl", .lights = 256, .defaults = true},
-    {.method = "arc", .suffix = ", bounce vpl 1024", .bounce = "vpl", .lights = 1024, .defaults = true},
-    {.method = "arc", .suffix = ", middle third alone", .middle = true, .defaults = true},
-    {.method = "arc", .suffix = ", middle third, --proxies", .middle = true, .proxies = true, .defaults = true},
+    {"ssdo", ", no thickness", .set = {.thickness = INFINITY}},
+    {"arc", ", no planes", .converged = true, .set = {.no_planes = true}},
+    {"arc", ", with bent", .defaults = true, .set = {.extra = 1u << LAYER_BENT}},
+    {"arc", ", bounce vpl 64", .defaults = true, .set = {.bounce = "vpl", .lights = 64}},
+    {"arc", ", bounce vpl 256", .defaults = true, .set = {.bounce = "vpl", .lights = 256}},
+    {"arc", ", bounce vpl 1024", .defaults = true, .set = {.bounce = "vpl", .lights = 1024}},
+    {"arc", ", middle third alone", .defaults = true, .set = {.middle = true}},
+    {"arc", ", middle third, --proxies", .defaults = true, .set = {.middle = true, .proxies = true}},
+    {"alchemy", ", --preset scene", .defaults = true, .set = {.radius = 0.05, .scale = 2.0, .contrast = 3.0}},
+    {"alchemy", ", --preset closeup", .defaults = true, .set = {.radius = 0.08, .scale = 1.7, .contrast = 2.2}},
+    {"alchemy", ", with depthmask", .defaults = true, .set = {.extra = 1u << LAYER_DEPTHMASK}},
+    {"s3ho", ", --sh-bands 3", .defaults = true, .set = {.sh_bands = 3}},
+    {"s3ho", ", --sh-sigma 0.3", .defaults = true, .set = {.sh_sigma = 0.3}},
+    {"s3ho", ", --from-sh", .defaults = true, .set = {.relit = true}},
 };
 
 // Methods whose error with (nearly) endless samples issue 4 compares.
@@ -46,11 +50,12 @@ static bench_row row_of(const method *m, const char *suffix, int samples, int bl
 
 static bench_row variant_row(const method *m, const variant *v, int samples, int blur)
 {
-    bench_row r = row_of(m, v->suffix, samples, blur);
-    if (v->thickness > 0.0) r.thickness = v->thickness;
-    r.no_planes = v->no_planes;
-    r.bounce = v->bounce, r.lights = v->lights;
-    r.middle = v->middle, r.proxies = v->proxies;
+    bench_row r = v->set, plain = row_of(m, v->suffix, samples, blur);
+    r.kind = plain.kind, r.m = m, r.samples = samples, r.blur = blur;
+    memcpy(r.name, plain.name, sizeof r.name);
+    if (r.thickness == 0.0) r.thickness = plain.thickness;
+    if (r.scale == 0.0) r.scale = plain.scale;
+    if (r.contrast == 0.0) r.contrast = plain.contrast;
     r.standard = blur > 0;
     return r;
 }
@@ -94,11 +99,6 @@ static int method_rows(const method *m, bench_row *rows)
     rows[n] = row_of(m, ", half resolution", m->samples, m->blur);
     rows[n].half = rows[n].standard = true;
     n++;
-    if (m->fills_sh) {
-        rows[n] = row_of(m, ", --sh-bands 3", m->samples, m->blur);
-        rows[n].sh_bands = 3;
-        rows[n++].standard = true;
-    }
     for (size_t v = 0; v < sizeof variants / sizeof *variants; v++)
         if (strcmp(variants[v].method, m->name) == 0) n += variant_rows(m, &variants[v], rows + n);
     return n;

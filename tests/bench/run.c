@@ -1,6 +1,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/half.h"
 #include "base/mem.h"
 #include "bench.h"
 #include "light/sh.h"
@@ -16,10 +17,11 @@ pass_settings bench_settings(const bench_row *row, const bench_scene *b)
 {
     options o;
     options_defaults(&o);
-    pass_settings set = rig_settings(row->m, b->radius);
+    double radius = row->radius > 0.0 ? row->radius : b->radius;
+    pass_settings set = rig_settings(row->m, radius);
     set.angle_bias = o.angle_bias;
-    set.sh_sigma = o.sh_sigma;
-    set.thickness = (row->thickness < 0.0 ? row->m->thickness : row->thickness) * b->radius;
+    set.sh_sigma = row->sh_sigma > 0.0 ? row->sh_sigma : o.sh_sigma;
+    set.thickness = (row->thickness < 0.0 ? row->m->thickness : row->thickness) * radius;
     set.samples = row->samples;
     set.blur = row->blur;
     set.planes = !row->no_planes;
@@ -40,7 +42,7 @@ unsigned bench_layers(const bench_row *row)
 {
     if (row->kind != ROW_METHOD) return 0;
     if (row->samples > BENCH_LONG) return 1u << LAYER_OCCLUSION;
-    return 1u << LAYER_OCCLUSION | 1u << LAYER_RADIANCE | (bounce_of(row) ? 1u << LAYER_INDIRECT : 0u);
+    return 1u << LAYER_OCCLUSION | 1u << LAYER_RADIANCE | (bounce_of(row) ? 1u << LAYER_INDIRECT : 0u) | row->extra;
 }
 
 // `share` of the scene's pixels were in the frame.
@@ -70,6 +72,26 @@ static bool open_mesh(rig *r, const bench_scene *b, const bench_row *row, pass_s
     return true;
 }
 
+// What a file of an earlier run would bring along, as half.
+static bool store_sh(rig *r, const bench_scene *b, const bench_row *row, const pass_settings *set, error *e)
+{
+    frame_result f;
+    size_t n = (size_t)b->gb.width * (size_t)b->gb.height;
+    if (!rig_run(r, &b->gb, row->m, set, 7u << LAYER_SH_0, &f, e)) return false;
+    for (int k = 0; k < 3 && e->code == ERR_NONE; k++) {
+        r->stored_sh[k] = mem_pixels(4 * n, sizeof(float), e);
+        for (size_t i = 0; r->stored_sh[k] && i < 4 * n; i++)
+            r->stored_sh[k][i] = i % 4 < 3 ? half_to_float(float_to_half(f.layers[LAYER_SH_0 + k][i / 4 * 3 + i % 4])) : 0.0f;
+    }
+    rig_free_result(&f);
+    return e->code == ERR_NONE;
+}
+
+static void forget_sh(rig *r)
+{
+    for (int k = 0; k < SH_IMAGES; k++) free(r->stored_sh[k]), r->stored_sh[k] = NULL;
+}
+
 // The rig's environment is the scene's for the time of a run; the scene keeps owning it.
 bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned layers, frame_result *out, bench_time *direct,
                bench_time *all, error *e)
@@ -83,7 +105,9 @@ bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned laye
     r->job.env_loaded = true;
     r->options.bounce = bounce_of(row);
     r->options.report = "timed"; // a report makes the passes wait and take their times
-    bool ok = (!row->m->needs_mesh || open_mesh(r, b, row, set, e)) && rig_run(r, &b->gb, row->m, &set, layers, out, e);
+    bool ok = (!row->m->needs_mesh || open_mesh(r, b, row, set, e)) && (!row->relit || store_sh(r, b, row, &set, e)) &&
+              rig_run(r, &b->gb, row->m, &set, layers, out, e);
+    forget_sh(r);
     r->job.env_loaded = false;
     r->job.env_image = (gpu_image){0};
     out->proxies = (proxy_set){0}; // the scene's

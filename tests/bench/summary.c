@@ -79,9 +79,9 @@ void bench_summarise(const bench_results *r, int set, bench_summary *out)
 {
     for (int i = 0; i < r->row_count; i++) summarise_row(r, i, set, &out[i]);
     for (int i = 0; i < r->row_count; i++) {
-        out[i].front = r->rows[i].kind == ROW_METHOD;
+        out[i].front = bench_competes(&r->rows[i]);
         for (int k = 0; k < r->row_count; k++)
-            if (r->rows[k].kind == ROW_METHOD && out[k].yards < out[i].yards && out[k].occlusion <= out[i].occlusion)
+            if (bench_competes(&r->rows[k]) && out[k].yards < out[i].yards && out[k].occlusion <= out[i].occlusion)
                 out[i].front = false;
         if (!isfinite(out[i].yards)) out[i].front = false;
     }

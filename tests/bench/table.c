@@ -218,7 +218,9 @@ static void legend(FILE *f, const bench_results *r)
             "units of the yardstick, a 64-tap (8 x 8) texelFetch box over an R32F texture of the frame's size, run in the same "
             "round; "
             "*all layers* adds radiance and, where the method has one, its bounce. Efficiency is 1 / (occlusion rmse^2 x yards). "
-            "\\*: on the Pareto front of error against time.\n",
+            "\\*: on the Pareto front of error against time. *Middle third*: the picture cut to it, scored there, times "
+            "scaled to a whole frame; with --proxies, what stands beside it is given as spheres. *--from-sh*: only the relight. "
+            "*raytrace* is timed once.\n",
             BENCH_PIXELS, BENCH_VPL_PIXELS, r->rounds, BENCH_LONG);
     fprintf(f, "\nAlchemy's best single scale and contrast over these scenes: %.1f and %.2f.\n", r->alchemy_scale,
             r->alchemy_contrast);
