@@ -33,3 +33,16 @@ indirect --method raytrace --mesh samples/box.obj --samples 256 && panel 3
 oiiotool samples/box.exr --ch ViewLayer.DiffInd.R,ViewLayer.DiffInd.G,ViewLayer.DiffInd.B samples/box_truth.exr \
     --ch DiffInd.R,DiffInd.G,DiffInd.B --add --mulc 0.5 -o "$tmp/panel.exr" && panel 4
 oiiotool "$tmp/1.png" "$tmp/2.png" "$tmp/3.png" "$tmp/4.png" --mosaic:pad=6 2x2 -o "$out/box-bounce.png"
+
+# The middle third of the open box, whose walls are then out of sight: alone, with the walls as spheres, and Cycles' whole box.
+oiiotool samples/box.exr --cut 160x250+160+8 --origin +0+0 --fullpixels -o "$tmp/middle.exr"
+third() { # NUMBER LAYER-IN-FILE BRIGHTNESS FILE
+    oiiotool "$4" --ch "$2.R,$2.G,$2.B" --cut 160x170+0+60 --mulc "$3" $encode -d uint8 -o "$tmp/third$1.png"
+}
+filter_middle() { "$bin" -q "$tmp/middle.exr" -o "$tmp/$1.exr" --keep none --env samples/sky_soft.exr --radius 0.6 --layers radiance,indirect $2; }
+filter_middle alone ''
+filter_middle spheres '--proxies samples/proxies/box.json'
+third 1 radiance 1 "$tmp/alone.exr" && third 2 radiance 1 "$tmp/spheres.exr" && third 3 ViewLayer.DiffDir 1 "$tmp/middle.exr"
+third 4 indirect 4 "$tmp/alone.exr" && third 5 indirect 4 "$tmp/spheres.exr" && third 6 ViewLayer.DiffInd 4 "$tmp/middle.exr"
+oiiotool "$tmp"/third1.png "$tmp"/third2.png "$tmp"/third3.png "$tmp"/third4.png "$tmp"/third5.png "$tmp"/third6.png \
+    --mosaic:pad=6 6x1 -o "$out/proxies.png"
