@@ -23,8 +23,13 @@ layout(rgba32f, binding = 3) writeonly uniform image2D light_image; // radiance,
 layout(rgba32f, binding = 4) readonly uniform image2D sender_image; // light before albedo, or a beauty
 layout(rgba32f, binding = 5) readonly uniform image2D albedo_image;
 
-vec3 sent_by(ivec2 q) {
-    vec3 L = imageLoad(sender_image, q).rgb;
+// What a surface sends to us. The side that the camera does not see is a guess: it looks our way, and what it sees is much what we
+// see, of which this share; and what is hidden behind a surface sends this share of what the surface does.
+const float UNSEEN = 0.3, HIDDEN = 0.75;
+vec3 unseen = vec3(0.0);
+
+vec3 sent_by(ivec2 q, bool seen) {
+    vec3 L = seen ? imageLoad(sender_image, q).rgb : unseen;
     return params.exitant == 1 ? L : L * imageLoad(albedo_image, q).rgb;
 }
 
@@ -71,6 +76,7 @@ void main() {
 #endif
 #ifdef BOUNCE
     vec3 bounced = vec3(0.0);
+    unseen = UNSEEN * imageLoad(sender_image, p).rgb;
 #endif
 #ifdef BENT
     vec3 shut = vec3(0.0);

@@ -1,12 +1,28 @@
 #version 450 core
-// Depth and normal in one texel, for passes that read many of them: the bits of the depth, and pack_normal.
+// lint: | PLANES
+// Depth and normal in one texel, for passes that read many of them: the bits of the depth, and pack_normal; with PLANES its highest
+// bit is set where the surface lies on one of the frame's planes.
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
+#include "include/arc_params.glsl"
+#include "include/arc_plane.glsl"
 
 layout(rg32ui, binding = 2) writeonly uniform uimage2D surface_image;
+layout(rgba32f, binding = 7) readonly uniform image2D planes_image;
 
 void main() {
     ivec2 p = this_pixel();
     if (!in_tile(p)) return;
-    imageStore(surface_image, p, uvec4(floatBitsToUint(depth_at(p)), pack_normal(normal_at(p)), 0u, 0u));
+    float depth = depth_at(p);
+    vec3 N = normal_at(p);
+    uint normal = pack_normal(N);
+#ifdef PLANES
+    vec3 P = position_of(p, depth);
+    for (int i = 0; i < params.planes; i++) {
+        vec4 equation = imageLoad(planes_image, ivec2(PLANE_EQUATION, i));
+        float room = imageLoad(planes_image, ivec2(PLANE_LIGHT, i)).w * (is_orthographic() ? 1.0 : depth);
+        if (abs(dot(equation.xyz, P) - equation.w) <= room && dot(equation.xyz, N) >= 0.99) normal |= 1u << 31u;
+    }
+#endif
+    imageStore(surface_image, p, uvec4(floatBitsToUint(depth), normal, 0u, 0u));
 }

@@ -6,8 +6,14 @@
 
 layout(rg32ui, binding = 6) readonly uniform uimage2D surface_image; // surface.comp
 
-// Without a radius a run is believed beyond the frame for this share of what is seen of it.
+// Without a radius a run is believed beyond the frame for this share of what is seen of it. Bent ground that no plane stands for
+// sends its light from wherever the tangent leads.
 const float BELIEVED = 0.3;
+#ifdef BOUNCE
+const float BELIEVED_BENT = 30.0;
+#else
+const float BELIEVED_BENT = BELIEVED;
+#endif
 
 struct Run {
     bool alive, starts; // starts: begins at its own silhouette
@@ -33,7 +39,7 @@ void finish(inout Sectors slots, Side s, Walk k, Run r, bool ends, bool now) {
     float thickness = max(r.width, r.starts && ends ? params.thin : params.thickness);
     float back = share(s, r.rim + thickness * away(s, r.rim, r.rim_inverse));
     uvec2 mask = sectors(r.low, max(r.high, back), k.jitter);
-    block(slots, now && r.alive && r.low <= r.high ? mask : uvec2(0u), r.light);
+    block(slots, now && r.alive && r.low <= r.high ? mask : uvec2(0u), HIDDEN * r.light);
 }
 
 // Takes the sample at distance `at`, `before` the one before.
@@ -47,7 +53,7 @@ void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at,
     bool joined = run.alive && surface && min(abs(dot(run.normal, gap)), abs(dot(n, gap))) <= params.tolerance * step_size;
     bool nearer = gap.z < 0.0;
 #ifdef BOUNCE
-    vec3 light = sent_by(q) * (dot(n, to) < 0.0 ? 1.0 : 0.0);
+    vec3 light = sent_by(q, dot(n, to) < 0.0);
 #endif
     finish(slots, s, k, run, !surface || !nearer, !joined);
     vec2 w = in_slice(s, to), w_in = w;
@@ -83,7 +89,9 @@ void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at,
 
 // Beyond the frame the last run goes on along its own tangent.
 void go_on(inout Run run, Side s, Walk k, float at) {
-    vec3 n = normal_at(ivec2(k.line.origin + at * k.line.direction));
+    ivec2 q = ivec2(k.line.origin + at * k.line.direction);
+    vec3 n = normal_at(q);
+    bool on_plane = (imageLoad(surface_image, q).y >> 31u) == 1u;
     vec2 facing = vec2(dot(n, s.tangent), dot(n, s.up)) + vec2(0.0, 1e-20);
     vec2 e = vec2(facing.y, -facing.x) * inversesqrt(dot(facing, facing)), ray = away(s, run.last, 1.0);
     if (e.x * ray.y - e.y * ray.x > 0.0) e = -e; // outwards: away from the view ray, clockwise from V
@@ -92,7 +100,7 @@ void go_on(inout Run run, Side s, Walk k, float at) {
     vec2 end = run.last + e * (sqrt(max(b * b + k.squared_radius - run.last_squared, 0.0)) - b);
     bool counts = k.line.border < k.line.reach && run.alive && run.last_squared < k.squared_radius;
 #else
-    vec2 end = run.last + e * (BELIEVED * length(run.last - run.first));
+    vec2 end = run.last + e * ((on_plane ? BELIEVED : BELIEVED_BENT) * length(run.last - run.first));
     bool counts = run.alive;
 #endif
     float c = share(s, end);

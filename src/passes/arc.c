@@ -97,17 +97,20 @@ static void put_suns(const pass_context *c, arc_params *p)
 
 // ---- the passes
 
-static bool make_surface(pass_context *c, error *e)
-{
-    if (c->surface.id) return true;
-    const pass_binding bindings[] = {{2, &c->surface, GL_WRITE_ONLY}};
-    return pass_make(c, &c->surface, GL_RG32UI, 0.0f, e) && pass_run(c, "surface", NULL, NULL, 0, bindings, 1, false, e);
-}
-
 static const char *with_planes(const pass_context *c, const char *defines, char *buf, size_t size)
 {
     snprintf(buf, size, "%s%s", defines, c->planes.count ? "PLANES 1\n" : "");
     return buf;
+}
+
+static bool make_surface(pass_context *c, error *e)
+{
+    if (c->surface.id) return true;
+    arc_params params = arc_params_of(c);
+    char buf[128];
+    const pass_binding bindings[] = {{2, &c->surface, GL_WRITE_ONLY}, {7, &c->plane_image, GL_READ_ONLY}};
+    return pass_make(c, &c->surface, GL_RG32UI, 0.0f, e) &&
+           pass_run(c, "surface", with_planes(c, "", buf, sizeof buf), &params, sizeof params, bindings, 2, false, e);
 }
 
 static bool run_occlusion(pass_context *c, const char *defines, error *e)
