@@ -4,7 +4,7 @@
 // w = |n_p| (cos n + n sin n), and sums over slices:
 //   occlusion = sum w (open share) / sum w                          so that an empty plane is exactly 1
 //   BENT:   bent = 2/3 N - sum w (blocked directions) / sum w        the cosine-weighted mean open direction: N on an empty plane
-//   LIGHT:  radiance = sum w (open share x environment) / sum w + suns,  visibility = its luminance over that of the open sky
+//   LIGHT:  radiance = sum w (open share x environment) / sum w,  visibility = its luminance over that of the open sky
 //   BOUNCE: indirect = sum w (blocked share x what the nearest blocker sends) / sum w
 // The sectors are blocked by HORIZON or BITMASK, the older methods, or by RUNS and PLANES, which are `arc`.
 #if !defined(LIGHT) && !defined(BOUNCE)
@@ -24,8 +24,8 @@ layout(rgba32f, binding = 4) readonly uniform image2D sender_image; // light bef
 layout(rgba32f, binding = 5) readonly uniform image2D albedo_image;
 
 // What a surface sends to us. The side that the camera does not see is a guess: it looks our way, and what it sees is much what we
-// see, of which this share; and what is hidden behind a surface sends this share of what the surface does.
-const float UNSEEN = 0.3, HIDDEN = 0.75;
+// see, of which this share.
+const float UNSEEN = 0.4;
 vec3 unseen = vec3(0.0);
 
 vec3 sent_by(ivec2 q, bool seen) {
@@ -118,7 +118,6 @@ void main() {
     light.open /= all;
     light.open_luminance /= all;
     light.all_luminance /= all;
-    add_suns(light, P, N, V, eye_distance, origin, turn.y);
     store(p, light.all_luminance > 0.0 ? min(1.0, light.open_luminance / light.all_luminance) : 1.0, light.open);
 #elif defined(BOUNCE)
     store(p, 0.0, params.strength * bounced / all);

@@ -1,4 +1,4 @@
-// Light through the open sectors of a slice, and from the suns.
+// Light through the open sectors of a slice.
 
 // The slice in CELLS pieces of equal angle; each looks the environment up once, at a level of its own solid angle, and weighs it by
 // its share of open sectors. `all` is what arrives with nothing in the way.
@@ -28,32 +28,5 @@ void add_sky(inout Light light, Side s, vec3 V, vec3 across, float n, float weig
         light.open_luminance += weight * open * dot(L, LUMINANCE);
         light.all_luminance += weight * share * dot(L, LUMINANCE);
         c = next;
-    }
-}
-
-// Every sun gets a slice side of its own, whose sector 0 .. 63 that holds the sun's direction is tested exactly there.
-void add_suns(inout Light light, vec3 P, vec3 N, vec3 V, float eye_distance, vec2 origin, float step_jitter) {
-    for (int i = 0; i < params.suns; i++) {
-        vec3 S = stored.sun_direction[i].xyz;
-        float cosine = dot(N, S), along = dot(S, V);
-        vec3 aside = S - along * V;
-        float sine = length(aside);
-        vec3 across = sine > 1e-4 ? aside / sine : tangent_frame(V)[0];
-        float n, weight;
-        Side s = side_of(V, across, N, eye_distance, n, weight);
-        float place = min(share_at(s, atan(sine, along)), 0.9999) * 64.0, jitter = fract(place);
-        Lines lines = lines_of(V, across, origin, -1.0);
-        Sectors slots = all_open();
-        march(slots, s, lines.right, P, N, step_jitter, jitter);
-#ifdef PLANES
-        block_by_planes(slots, s, V, across, n, lines, P, step_jitter, jitter);
-#endif
-        int k = int(place);
-        uint word = k < 32 ? slots.blocked.x : slots.blocked.y;
-        float visible = ((word >> uint(k & 31)) & 1u) == 0u ? 1.0 : 0.0;
-        vec3 L = max(cosine, 0.0) * stored.sun_light[i].rgb;
-        light.open += visible * L;
-        light.open_luminance += visible * dot(L, LUMINANCE);
-        light.all_luminance += dot(L, LUMINANCE);
     }
 }

@@ -9,11 +9,14 @@ layout(rg32ui, binding = 6) readonly uniform uimage2D surface_image; // surface.
 // Without a radius a run is believed beyond the frame for this share of what is seen of it. Bent ground that no plane stands for
 // sends its light from wherever the tangent leads.
 const float BELIEVED = 0.3;
-#ifdef BOUNCE
-const float BELIEVED_BENT = 30.0;
-#else
+#ifdef SUNS
 const float BELIEVED_BENT = BELIEVED;
+#else
+const float BELIEVED_BENT = 30.0;
 #endif
+
+// What is hidden behind a surface sends this share of what the surface does.
+const float HIDDEN = 0.6;
 
 struct Run {
     bool alive, starts; // starts: begins at its own silhouette
@@ -101,7 +104,7 @@ void go_on(inout Run run, Side s, Walk k, float at) {
     bool counts = k.line.border < k.line.reach && run.alive && run.last_squared < k.squared_radius;
 #else
     vec2 end = run.last + e * ((on_plane ? BELIEVED : BELIEVED_BENT) * length(run.last - run.first));
-    bool counts = run.alive;
+    bool counts = run.alive && k.line.border <= k.line.reach;
 #endif
     float c = share(s, end);
     bool rises = counts && c >= run.high;

@@ -13,8 +13,10 @@ layout(std140, binding = 1) uniform ParamsBlock {
     int exitant;
     float inverse_steps;
     int unused0, unused1;
-    vec4 sun_direction[4]; // camera space, unit
+    vec4 sun_direction[4]; // camera space, unit; w half its width, radians
     vec4 sun_light[4];     // rgb: irradiance over pi of a surface that faces the sun
+    vec4 box_low, box_high; // of all surfaces, map axes, the eye at the origin
+    vec4 rest[9];           // radiance coefficients of the map without its suns
 } stored;
 
 // A copy made before main, as in frame.glsl; number by number, because a block copied whole is read where it is used all the same.

@@ -2,6 +2,15 @@
 // slice, so that a mask's expected weight is exact; and any single direction can be tested exactly by choosing the jitter.
 // With BOUNCE a sector also takes the light of what blocks it first.
 
+#ifdef SUNS
+// They may also divide a part of the slice.
+vec2 window = vec2(0.0, 64.0); // its first share, and sectors per share
+void divide_into_sectors(float low, float high) { window = vec2(low, 64.0 / max(high - low, 1e-6)); }
+float place(float c) { return (c - window.x) * window.y; }
+#else
+float place(float c) { return c * 64.0; }
+#endif
+
 struct Sectors {
     uvec2 blocked;
 #ifdef BOUNCE
@@ -25,7 +34,7 @@ uvec2 sectors_below(int k) {
 }
 // Sectors whose direction lies in [from, to).
 uvec2 sectors(float from, float to, float jitter) {
-    int a = int(ceil(from * 64.0 - jitter)), b = int(ceil(to * 64.0 - jitter));
+    int a = int(ceil(place(from) - jitter)), b = int(ceil(place(to) - jitter));
     return sectors_below(b) & ~sectors_below(a);
 }
 float sector_share(uvec2 mask) { return float(bitCount(mask.x) + bitCount(mask.y)) * (1.0 / 64.0); }

@@ -24,12 +24,13 @@ vec3 radiance_from(vec3 direction, float level) {
     return frame_env.w == 1.0 ? constant_radiance : textureLod(environment_map, map_uv(direction), level).rgb;
 }
 
-// Irradiance / pi at a map-space normal from the nine radiance coefficients: c1..c5 of Ramamoorthi and Hanrahan (2001).
-vec3 sh_irradiance_over_pi(vec3 n) {
+// Irradiance / pi at a map-space normal from nine radiance coefficients: c1..c5 of Ramamoorthi and Hanrahan (2001).
+vec3 sh_irradiance_over_pi(vec4 sh[9], vec3 n) {
     const float c1 = 0.429043, c2 = 0.511664, c3 = 0.743125, c4 = 0.886227, c5 = 0.247708;
-    vec3 e = c1 * frame.sh[8].rgb * (n.x * n.x - n.y * n.y) + c3 * frame.sh[6].rgb * n.z * n.z + c4 * frame.sh[0].rgb -
-             c5 * frame.sh[6].rgb +
-             2.0 * c1 * (frame.sh[4].rgb * n.x * n.y + frame.sh[7].rgb * n.x * n.z + frame.sh[5].rgb * n.y * n.z) +
-             2.0 * c2 * (frame.sh[3].rgb * n.x + frame.sh[1].rgb * n.y + frame.sh[2].rgb * n.z);
+    vec3 e = c1 * sh[8].rgb * (n.x * n.x - n.y * n.y) + c3 * sh[6].rgb * n.z * n.z + c4 * sh[0].rgb -
+             c5 * sh[6].rgb +
+             2.0 * c1 * (sh[4].rgb * n.x * n.y + sh[7].rgb * n.x * n.z + sh[5].rgb * n.y * n.z) +
+             2.0 * c2 * (sh[3].rgb * n.x + sh[1].rgb * n.y + sh[2].rgb * n.z);
     return max(e / PI, vec3(0.0));
 }
+vec3 sh_irradiance_over_pi(vec3 n) { return sh_irradiance_over_pi(frame.sh, n); }

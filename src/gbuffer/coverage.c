@@ -1,6 +1,10 @@
 // Coverage k (DESIGN.md, "Edges"; facts/ecosystem.md 1.3).
+#include <math.h>
+
 #include "base/mem.h"
 #include "gbuffer/build.h"
+
+static const double SAME_COLOUR = 0.01; // of the sum of the components: what half floats and a little noise leave of equal chroma
 
 static bool alpha_varies(const build *b)
 {
@@ -25,6 +29,30 @@ static bool near_background(const build *b, int x, int y)
     return false;
 }
 
+// Where the renderer averages colours too, a pixel's albedo over that of a whole pixel of its material beside it is its coverage:
+// it knows what the length of the normal does not when two faces meet in the pixel. 0 where no such pixel is found.
+static double coverage_of_albedo(const build *b, int x, int y)
+{
+    enum { REACH = 2 };
+    const float *own = b->g->albedo + 4 * build_index(b, x, y);
+    double k = 0.0, sum = (double)own[0] + (double)own[1] + (double)own[2];
+    int nearest = 2 * REACH * REACH + 1;
+    for (int v = y - REACH; v <= y + REACH; v++)
+        for (int u = x - REACH; u <= x + REACH; u++) {
+            int squared = (u - x) * (u - x) + (v - y) * (v - y);
+            if (squared >= nearest || u < 0 || v < 0 || u >= b->g->width || v >= b->g->height || near_background(b, u, v))
+                continue;
+            const float *other = b->g->albedo + 4 * build_index(b, u, v);
+            double whole = (double)other[0] + (double)other[1] + (double)other[2], off = 0.0;
+            if (!(whole > 0.0)) continue;
+            for (int c = 0; c < 3; c++) off = fmax(off, fabs((double)own[c] - (double)other[c] * sum / whole));
+            if (off > SAME_COLOUR * sum) continue;
+            nearest = squared;
+            k = sum / whole;
+        }
+    return k;
+}
+
 // Away from the background alpha is the material's (glass), and |N| a bump's: neither is coverage.
 static void coverage_row(build *b, int y)
 {
@@ -37,7 +65,7 @@ static void coverage_row(build *b, int y)
             if (b->alpha.data)
                 stored = plane_get(&b->alpha, x, y);
             else if (b->has_normal && b->row->normals_averaged && !b->normal_unorm)
-                stored = normals_length(b, x, y);
+                stored = fmax(normals_length(b, x, y), b->g->albedo ? coverage_of_albedo(b, x, y) : 0.0);
             if (isfinite(stored)) k = fmin(fmax(stored, 0.0), 1.0);
         }
         b->g->coverage[i] = (float)k;
@@ -58,7 +86,7 @@ bool coverage_make(build *b)
     bool from_normals = !b->alpha.data && b->has_normal && b->row->normals_averaged && !b->normal_unorm;
     build_note(b, "coverage at edges: from %s",
                b->alpha.data  ? "alpha"
-               : from_normals ? "the length of the normals"
+               : from_normals ? "the length of the normals and the albedo"
                               : "depth alone");
     build_rows(b, coverage_row);
     return true;

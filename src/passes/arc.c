@@ -2,10 +2,10 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
-static const float HUGE_LENGTH = 1e15f; // its square is still a float
-static const float KAPPA = 1.0f;        // a run is as thick as it is wide
-static const float TOLERANCE = 1.3f;    // a run may turn by 52 degrees between two steps
+static const float KAPPA = 1.0f;     // a run is as thick as it is wide
+static const float TOLERANCE = 1.3f; // a run may turn by 52 degrees between two steps
 
 // A filter over the neighbours averages slices but cannot find what steps have missed, so small budgets go into steps: 1 x 8, 1 x
 // 16 and 2 x 16 have lower errors at the same time than 2 x 4, 2 x 8 and 4 x 8. Large ones, which no filter follows, stay near
@@ -41,13 +41,13 @@ arc_params arc_params_of(const pass_context *c)
 // Columns of the planes' image: shaders/include/arc_plane.glsl.
 enum { EQUATION, AXIS_U, AXIS_V, LIGHT, CELLS, COLUMNS = CELLS + PLANE_CELLS / 4 };
 
-static void put(float to[4], vec3 a, double w) { to[0] = (float)a.x, to[1] = (float)a.y, to[2] = (float)a.z, to[3] = (float)w; }
+void arc_put(float to[4], vec3 a, double w) { to[0] = (float)a.x, to[1] = (float)a.y, to[2] = (float)a.z, to[3] = (float)w; }
 
 static void put_plane(float row[COLUMNS][4], const plane *p, double room)
 {
-    put(row[EQUATION], p->normal, p->offset);
-    for (int i = 0; i < 2; i++) put(row[AXIS_U + i], v3_scale(p->axis[i], 1.0 / p->half[i]), p->centre[i] / p->half[i]);
-    put(row[LIGHT], v3(0, 0, 0), room);
+    arc_put(row[EQUATION], p->normal, p->offset);
+    for (int i = 0; i < 2; i++) arc_put(row[AXIS_U + i], v3_scale(p->axis[i], 1.0 / p->half[i]), p->centre[i] / p->half[i]);
+    arc_put(row[LIGHT], v3(0, 0, 0), room);
     for (int y = 0; y < PLANE_CELLS; y++) row[CELLS + y / 4][y % 4] = (float)p->cells[y];
 }
 
@@ -55,7 +55,7 @@ static void put_plane(float row[COLUMNS][4], const plane *p, double room)
 static bool make_planes(pass_context *c, error *e)
 {
     if (!c->set.planes || c->plane_image.id) return true;
-    if (!planes_find(c->gb, &c->planes, e)) return false;
+    if (!c->planes.found && !planes_find(c->gb, &c->planes, e)) return false;
     float rows[PLANES_MAX][COLUMNS][4] = {0};
     for (int i = 0; i < c->planes.count; i++) put_plane(rows[i], &c->planes.planes[i], c->planes.room);
     for (int i = 0; i < c->planes.count; i++)
@@ -78,26 +78,15 @@ static bool make_sunless(pass_context *c, error *e)
     l->ready = true;
     if (l->suns.count == 0) return true;
     log_info(c->log, "environment: %d small bright source%s treated apart", l->suns.count, l->suns.count > 1 ? "s are" : " is");
+    memcpy(l->rest, rest.sh, sizeof l->rest);
     bool ok = pass_upload_environment(c->g, &rest, &l->map, e);
     environment_free(&rest);
     return ok;
 }
 
-static void put_suns(const pass_context *c, arc_params *p)
-{
-    const sun_set *set = &c->sunless->suns;
-    mat3 camera_from_map = m3_transpose(m3_mul(c->env->map_from_world, c->set.world_from_camera));
-    p->suns = set->count;
-    for (int i = 0; i < set->count; i++) {
-        const sun *s = &set->suns[i];
-        put(p->sun_direction[i], m3_apply(camera_from_map, s->direction), 0);
-        put(p->sun_light[i], v3_scale(v3(s->flux[0], s->flux[1], s->flux[2]), 1.0 / M_PI), 0);
-    }
-}
-
 // ---- the passes
 
-static const char *with_planes(const pass_context *c, const char *defines, char *buf, size_t size)
+const char *arc_with_planes(const pass_context *c, const char *defines, char *buf, size_t size)
 {
     snprintf(buf, size, "%s%s", defines, c->planes.count ? "PLANES 1\n" : "");
     return buf;
@@ -110,8 +99,10 @@ static bool make_surface(pass_context *c, error *e)
     char buf[128];
     const pass_binding bindings[] = {{2, &c->surface, GL_WRITE_ONLY}, {7, &c->plane_image, GL_READ_ONLY}};
     return pass_make(c, &c->surface, GL_RG32UI, 0.0f, e) &&
-           pass_run(c, "surface", with_planes(c, "", buf, sizeof buf), &params, sizeof params, bindings, 2, false, e);
+           pass_run(c, "surface", arc_with_planes(c, "", buf, sizeof buf), &params, sizeof params, bindings, 2, false, e);
 }
+
+bool arc_make_inputs(pass_context *c, error *e) { return make_planes(c, e) && make_surface(c, e); }
 
 static bool run_occlusion(pass_context *c, const char *defines, error *e)
 {
@@ -124,7 +115,7 @@ static bool run_occlusion(pass_context *c, const char *defines, error *e)
                                      {3, &c->bent, GL_WRITE_ONLY},
                                      {6, &c->surface, GL_READ_ONLY},
                                      {7, &c->plane_image, GL_READ_ONLY}};
-    return pass_run(c, "arc", with_planes(c, with_bent, buf, sizeof buf), &params, sizeof params, bindings, 4, false, e);
+    return pass_run(c, "arc", arc_with_planes(c, with_bent, buf, sizeof buf), &params, sizeof params, bindings, 4, false, e);
 }
 
 // Light comes from any distance, so its march has no radius.
@@ -134,7 +125,6 @@ static bool run_light(pass_context *c, error *e)
     char buf[128];
     params.radius = HUGE_LENGTH;
     if (!make_sunless(c, e)) return false;
-    put_suns(c, &params);
     if (!pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e)) return false;
     if (c->want_visibility && !pass_make(c, &c->visibility, GL_R32F, 1.0f, e)) return false;
     gpu_image whole = c->environment;
@@ -144,7 +134,7 @@ static bool run_light(pass_context *c, error *e)
                                      {6, &c->surface, GL_READ_ONLY},
                                      {7, &c->plane_image, GL_READ_ONLY}};
     const char *defines = c->want_visibility ? "RUNS 1\nLIGHT 1\nVISIBILITY 1\n" : "RUNS 1\nLIGHT 1\n";
-    bool ok = pass_run(c, "arc", with_planes(c, defines, buf, sizeof buf), &params, sizeof params, bindings, 4, false, e);
+    bool ok = pass_run(c, "arc", arc_with_planes(c, defines, buf, sizeof buf), &params, sizeof params, bindings, 4, false, e);
     c->environment = whole;
     return ok;
 }
@@ -154,7 +144,7 @@ bool pass_bitmask(pass_context *c, error *e) { return run_occlusion(c, "BITMASK 
 
 bool pass_arc(pass_context *c, error *e)
 {
-    if (!make_planes(c, e) || !make_surface(c, e) || !run_occlusion(c, "RUNS 1\n", e)) return false;
+    if (!arc_make_inputs(c, e) || !run_occlusion(c, "RUNS 1\n", e)) return false;
     return !(c->want_radiance || c->want_visibility) || run_light(c, e);
 }
 
@@ -183,7 +173,7 @@ bool pass_arc_bounce(pass_context *c, error *e)
     bool exitant = !c->set.relight;
     const gpu_image *sender = exitant ? &c->beauty : &c->radiance, *albedo = exitant ? &c->beauty : &c->albedo;
     char buf[128];
-    if (!make_planes(c, e) || !make_surface(c, e)) return false;
+    if (!arc_make_inputs(c, e)) return false;
     arc_params params = arc_params_of(c);
     params.radius = HUGE_LENGTH;
     params.exitant = exitant;
@@ -193,6 +183,6 @@ bool pass_arc_bounce(pass_context *c, error *e)
                                      {5, albedo, GL_READ_ONLY},
                                      {6, &c->surface, GL_READ_ONLY},
                                      {7, &c->plane_image, GL_READ_ONLY}};
-    return pass_run(c, "arc", with_planes(c, "RUNS 1\nBOUNCE 1\n", buf, sizeof buf), &params, sizeof params, bindings, 5, false,
-                    e);
+    return pass_run(c, "arc", arc_with_planes(c, "RUNS 1\nBOUNCE 1\n", buf, sizeof buf), &params, sizeof params, bindings, 5,
+                    false, e);
 }

@@ -11,11 +11,23 @@ typedef struct arc_params {
     int suns, exitant;
     float inverse_steps;
     int unused[2];
-    float sun_direction[4][4], sun_light[4][4];
+    float sun_direction[SUNS_MAX][4], sun_light[SUNS_MAX][4];
+    float box[2][4], rest[9][4];
 } arc_params;
 
 // Slices and steps a side for a number of samples = slices x 2 x steps.
 void arc_grid(int samples, int *slices, int *steps);
 arc_params arc_params_of(const pass_context *c);
+
+// For a march without a radius: its square is still a float.
+#define HUGE_LENGTH 1e15f
+
+// What all marches read, once a frame: the planes and their image, the packed surfaces.
+bool arc_make_inputs(pass_context *c, error *e);
+
+// `defines`, and PLANES if there are any.
+const char *arc_with_planes(const pass_context *c, const char *defines, char *buf, size_t size);
+
+void arc_put(float to[4], vec3 a, double w);
 
 #endif

@@ -64,7 +64,8 @@ typedef struct pass_settings {
 typedef struct pass_sunless {
     bool ready;
     sun_set suns;
-    gpu_image map; // id 0: there are no suns, the whole map serves
+    double rest[9][3]; // radiance coefficients of what is left
+    gpu_image map;     // id 0: there are no suns, the whole map serves
 } pass_sunless;
 
 typedef struct pass_context {
@@ -145,6 +146,7 @@ bool pass_raytrace_bounce(pass_context *c, error *e);
 bool pass_alchemy(pass_context *c, error *e);     // -> occlusion (1 - S, before its bounds)
 bool pass_arc(pass_context *c, error *e);         // -> occlusion, bent, radiance
 bool pass_arc_bounce(pass_context *c, error *e);  // radiance or beauty, albedo -> indirect
+bool pass_suns(pass_context *c, error *e);        // after pass_arc and its filter: radiance, visibility: in place
 bool pass_gtao(pass_context *c, error *e);        // -> occlusion, bent
 bool pass_bitmask(pass_context *c, error *e);     // -> occlusion, bent
 bool pass_hemisphere(pass_context *c, error *e);  // -> occlusion

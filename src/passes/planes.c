@@ -210,6 +210,7 @@ bool planes_find(const gbuffer *gb, plane_set *out, error *e)
         out->planes[out->count++] = p;
     }
     out->samples = f.total;
+    out->found = true;
     out->room = DISTANCE * (f.orthographic ? gb->extent : 1.0);
     free(f.s);
     return true;

@@ -24,6 +24,7 @@ typedef struct plane {
 typedef struct plane_set {
     plane planes[PLANES_MAX];
     int count;
+    bool found;     // looked for
     double room;    // how far off its plane a surface may lie: times its depth, with an orthographic camera a length
     double samples; // surface samples that were looked at
 } plane_set;

@@ -24,6 +24,7 @@ typedef struct bench_scene {
     bool generated;
     environment env; // empty (level_count 0) until opened
     gpu_image env_image;
+    pass_sunless *sunless; // the environment's own; made by the first run that needs it
     layer layer; // reference A
     pixel *pixels;
     int pixel_count;

@@ -103,6 +103,7 @@ bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned laye
     r->job.env = b->env;
     r->job.env_image = b->env_image;
     r->job.env_loaded = true;
+    r->job.sunless = *b->sunless;
     r->options.bounce = bounce_of(row);
     r->options.report = "timed"; // a report makes the passes wait and take their times
     bool ok = (!row->m->needs_mesh || open_mesh(r, b, row, set, e)) && (!row->relit || store_sh(r, b, row, &set, e)) &&
@@ -111,6 +112,8 @@ bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned laye
     r->job.env_loaded = false;
     r->job.env_image = (gpu_image){0};
     out->proxies = (proxy_set){0}; // the scene's
+    *b->sunless = r->job.sunless;
+    r->job.sunless = (pass_sunless){0};
     if (!ok) return false;
     take_time(out, "irradiance", share, direct);
     take_time(out, "", share, all);

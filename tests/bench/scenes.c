@@ -10,7 +10,8 @@ bool bench_light(bench_scene *b, const char *path, double rotate, rig *r, error 
 {
     env_options eo = {
         .path = path && *path ? path : NULL, .up_z = true, .rotate_degrees = rotate, .scale = 1.0, .threads = threads_default()};
-    return environment_load(&eo, &b->env, &r->log, e) && pass_upload_environment(&r->job.g, &b->env, &b->env_image, e);
+    b->sunless = mem_zero(1, sizeof *b->sunless, e);
+    return b->sunless && environment_load(&eo, &b->env, &r->log, e) && pass_upload_environment(&r->job.g, &b->env, &b->env_image, e);
 }
 
 bool bench_prepare(bench_scene *b, error *e)
@@ -67,6 +68,8 @@ void bench_scene_free(bench_scene *b)
     sample_free(&b->s);
     gbuffer_free(&b->gb);
     gpu_image_free(&b->env_image);
+    if (b->sunless) gpu_image_free(&b->sunless->map);
+    free(b->sunless);
     if (b->env.level_count) environment_free(&b->env);
     layer_free(&b->layer);
     free(b->pixels);

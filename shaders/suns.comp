@@ -1,0 +1,82 @@
+#version 450 core
+// lint: | PLANES
+// Light of the environment's suns, small bright sources taken out of the map; suns_add.comp adds it to the light of the rest. Each
+// sun gets one side of a slice, marched as `arc` marches (THEORY.md 3.4), whose 64 sectors divide the sun's own disc; so a penumbra
+// has no noise.
+#define SUNS
+#include "include/frame.glsl"
+#include "include/sampling.glsl"
+#include "include/environment.glsl"
+#include "include/arc_params.glsl"
+#include "include/arc_slice.glsl"
+#include "include/arc_line.glsl"
+#include "include/arc_sectors.glsl"
+#include "include/suns.glsl"
+#include "include/arc_march.glsl"
+#ifdef PLANES
+#include "include/arc_planes.glsl"
+#endif
+
+layout(rgba32f, binding = 3) writeonly uniform image2D sun_image; // rgb light, a its share of what arrives with nothing in the way
+
+// Where a ray leaves the box of all surfaces, beyond which nothing can block it; in pixels along its line.
+float way_out(vec3 P, vec3 S, Line line) {
+    vec3 from = to_map(P), along = to_map(S);
+    vec3 wall = mix(stored.box_low.xyz, stored.box_high.xyz, greaterThan(along, vec3(0.0)));
+    vec3 times = (wall - from) / mix(along, vec3(1e-20), lessThan(abs(along), vec3(1e-20)));
+    vec3 X = P + max(0.0, min(times.x, min(times.y, times.z))) * S;
+    return in_front(X) ? min(distance(screen_of(X), line.origin), line.border) : line.border;
+}
+
+#ifdef PLANES
+// Whether a plane hides the sun.
+bool behind_plane(vec3 P, vec3 S, Line line) {
+    Border border = border_of(line);
+    bool hidden = false;
+    for (int i = 0; i < params.planes; i++) {
+        vec4 equation = imageLoad(planes_image, ivec2(PLANE_EQUATION, i));
+        vec4 u = imageLoad(planes_image, ivec2(PLANE_U, i)), v = imageLoad(planes_image, ivec2(PLANE_V, i));
+        float height = equation.w - dot(equation.xyz, P), rate = dot(equation.xyz, S);
+        bool towards = height * rate > 0.0 && abs(height) > ROOM * P.z;
+        vec3 X = P + (towards ? height / rate : 0.0) * S;
+        vec2 here = vec2(dot(u.xyz, X) - u.w, dot(v.xyz, X) - v.w);
+        hidden = hidden || (towards && stands(i, X, here, allows(border, equation)));
+    }
+    return hidden;
+}
+#endif
+
+void main() {
+    ivec2 p = this_pixel();
+    if (!in_tile(p)) return;
+    float depth = depth_at(p);
+    if (depth == 0.0) return;
+    vec3 P = position_of(p, depth), N = normal_at(p), V = view_of(P);
+    vec2 origin = vec2(p) + 0.5;
+    float eye_distance = length(P), noise = pixel_noise(p, params.seed).x;
+    vec3 light = vec3(0.0), all = vec3(0.0);
+    for (int i = 0; i < params.suns; i++) {
+        vec3 S = stored.sun_direction[i].xyz, L = sunlight(i, N);
+        if (dot(N, S) <= 0.0) continue;
+        float half_width = stored.sun_direction[i].w, along = dot(S, V);
+        vec3 aside = S - along * V;
+        float sine = length(aside), t = atan(sine, along);
+        vec3 across = sine > 1e-4 ? aside / sine : tangent_frame(V)[0];
+        float n, weight;
+        Side side = side_of(V, across, N, eye_distance, n, weight);
+        float low = share_at(side, t - half_width), high = share_at(side, t + half_width);
+        divide_into_sectors(low, high);
+        Line line = lines_of(V, across, origin, -1.0).right;
+        line.reach = way_out(P, S, line);
+        Sectors slots = all_open();
+        march(slots, side, line, P, N, noise, 0.5);
+        float open = 1.0 - sector_share(slots.blocked);
+#ifdef PLANES
+        if (behind_plane(P, S, line)) open = 0.0;
+#endif
+        light += open * L;
+        all += L;
+    }
+    float most = dot(all, LUMINANCE);
+    imageStore(sun_image, p, vec4(light, most > 0.0 ? dot(light, LUMINANCE) / most : 1.0));
+}

@@ -1,0 +1,85 @@
+#include <math.h>
+
+#include "base/threads.h"
+#include "passes/arc.h"
+
+// The box of the frame's surfaces, in the axes of the environment's map: scenes stand upright in it, so it is tight above a
+// ground.
+typedef struct box_job {
+    const gbuffer *gb;
+    mat3 map_from_camera;
+    vec3 low[64], high[64]; // of each band of rows
+} box_job;
+
+enum { BANDS = 64 };
+
+static const float SUN_KAPPA =
+    0.5f; // a sharp shadow shows where a back is; half as deep as wide errs least (1: .129, .5: .115, .25: .122)
+
+static bool bound_band(void *context, size_t band, int worker)
+{
+    (void)worker;
+    box_job *j = context;
+    const gbuffer *gb = j->gb;
+    vec3 low = v3(INFINITY, INFINITY, INFINITY), high = v3_scale(low, -1.0);
+    int from = (int)(band * (size_t)gb->height / BANDS), to = (int)((band + 1) * (size_t)gb->height / BANDS);
+    for (int y = from; y < to; y++)
+        for (int x = 0; x < gb->width; x++) {
+            if (gb->depth[(size_t)y * (size_t)gb->width + (size_t)x] == 0.0f) continue;
+            vec3 p = m3_apply(j->map_from_camera, gbuffer_position(gb, x, y));
+            low = v3(fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z));
+            high = v3(fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z));
+        }
+    j->low[band] = low, j->high[band] = high;
+    return true;
+}
+
+static void put_box(const pass_context *c, mat3 map_from_camera, arc_params *p)
+{
+    box_job j = {.gb = c->gb, .map_from_camera = map_from_camera};
+    threads_for(c->threads, BANDS, bound_band, &j);
+    for (int i = 1; i < BANDS; i++) {
+        j.low[0] = v3(fmin(j.low[0].x, j.low[i].x), fmin(j.low[0].y, j.low[i].y), fmin(j.low[0].z, j.low[i].z));
+        j.high[0] = v3(fmax(j.high[0].x, j.high[i].x), fmax(j.high[0].y, j.high[i].y), fmax(j.high[0].z, j.high[i].z));
+    }
+    arc_put(p->box[0], j.low[0], 0);
+    arc_put(p->box[1], j.high[0], 0);
+}
+
+static void put_suns(const pass_context *c, arc_params *p)
+{
+    const sun_set *set = &c->sunless->suns;
+    mat3 map_from_camera = m3_mul(c->env->map_from_world, c->set.world_from_camera);
+    put_box(c, map_from_camera, p);
+    p->suns = set->count;
+    for (int i = 0; i < set->count; i++) {
+        const sun *s = &set->suns[i];
+        double half_width = acos(fmax(-1.0, 1.0 - s->solid_angle / (2.0 * M_PI))); // of a cap of that solid angle
+        arc_put(p->sun_direction[i], m3_apply(m3_transpose(map_from_camera), s->direction), half_width);
+        arc_put(p->sun_light[i], v3_scale(v3(s->flux[0], s->flux[1], s->flux[2]), 1.0 / M_PI), 0);
+    }
+    for (int i = 0; i < 9; i++)
+        for (int k = 0; k < 3; k++) p->rest[i][k] = (float)c->sunless->rest[i][k];
+}
+
+bool pass_suns(pass_context *c, error *e)
+{
+    bool radiance = c->radiance.id, visibility = c->visibility.id;
+    if (!(radiance || visibility) || c->sunless->suns.count == 0) return true;
+    if (!arc_make_inputs(c, e)) return false;
+    arc_params params = arc_params_of(c);
+    params.radius = HUGE_LENGTH;
+    params.kappa *= SUN_KAPPA;
+    params.steps = c->set.samples < 16 ? 16 : c->set.samples > 128 ? 128 : c->set.samples;
+    params.inverse_steps = 1.0f / (float)params.steps;
+    put_suns(c, &params);
+    gpu_image light = {0};
+    char buf[128];
+    const pass_binding march[] = {{3, &light, GL_WRITE_ONLY}, {6, &c->surface, GL_READ_ONLY}, {7, &c->plane_image, GL_READ_ONLY}};
+    const pass_binding add[] = {{2, &c->visibility, GL_READ_WRITE}, {3, &light, GL_READ_ONLY}, {4, &c->radiance, GL_READ_WRITE}};
+    bool ok = pass_make(c, &light, GL_RGBA32F, 0.0f, e) &&
+              pass_run(c, "suns", arc_with_planes(c, "", buf, sizeof buf), &params, sizeof params, march, 3, false, e) &&
+              pass_run(c, "suns_add", visibility ? "VISIBILITY 1\n" : NULL, &params, sizeof params, add, 3, false, e);
+    gpu_image_free(&light);
+    return ok;
+}
