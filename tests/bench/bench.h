@@ -25,7 +25,7 @@ typedef struct bench_scene {
     environment env; // empty (level_count 0) until opened
     gpu_image env_image;
     pass_sunless *sunless; // the environment's own; made by the first run that needs it
-    layer layer; // reference A
+    layer layer;           // reference A
     pixel *pixels;
     int pixel_count;
     char mesh[256];             // the scene's own surfaces, an OBJ file; empty: none

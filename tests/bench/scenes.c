@@ -11,7 +11,8 @@ bool bench_light(bench_scene *b, const char *path, double rotate, rig *r, error 
     env_options eo = {
         .path = path && *path ? path : NULL, .up_z = true, .rotate_degrees = rotate, .scale = 1.0, .threads = threads_default()};
     b->sunless = mem_zero(1, sizeof *b->sunless, e);
-    return b->sunless && environment_load(&eo, &b->env, &r->log, e) && pass_upload_environment(&r->job.g, &b->env, &b->env_image, e);
+    return b->sunless && environment_load(&eo, &b->env, &r->log, e) &&
+           pass_upload_environment(&r->job.g, &b->env, &b->env_image, e);
 }
 
 bool bench_prepare(bench_scene *b, error *e)
