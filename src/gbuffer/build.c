@@ -114,7 +114,7 @@ bool gbuffer_build(const exr_file *file, const resolution *r, const gbuffer_opti
     if (done) {
         positions_final(&b);
         normals_make(&b);
-        done = colours_make(&b) && coverage_make(&b) && summarise(&b);
+        done = albedo_make(&b) && coverage_make(&b) && colours_make(&b) && summarise(&b);
     }
     free(b.surface);
     free(b.raw);

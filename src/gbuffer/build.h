@@ -144,7 +144,8 @@ void normals_make(build *b);
 void defects_warn(build *b);
 
 // coverage.c, colours.c
-bool coverage_make(build *b);
+bool albedo_make(build *b);   // before the coverage, which asks it
+bool coverage_make(build *b); // before the other colours: a beauty that nobody sees is left out
 bool colours_make(build *b);
 
 #endif

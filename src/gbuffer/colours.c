@@ -104,6 +104,8 @@ static bool sees_background(const gbuffer *g)
     return !g->coverage;
 }
 
+bool albedo_make(build *b) { return colour(b, NEED_ALBEDO, ROLE_ALBEDO, &b->g->albedo); }
+
 bool colours_make(build *b)
 {
     gbuffer *g = b->g;
@@ -111,7 +113,6 @@ bool colours_make(build *b)
     if (b->options->need & NEED_BACKGROUND && sees_background(g)) beauty |= NEED_BACKGROUND;
     g->has_alpha = b->r->components[ROLE_ALPHA] > 0;
     g->has_diffuse_indirect = b->r->components[ROLE_DIFFUSE_INDIRECT] > 0;
-    return colour(b, NEED_ALBEDO, ROLE_ALBEDO, &g->albedo) && colour(b, beauty, ROLE_BEAUTY, &g->beauty) &&
-           colour(b, NEED_EMISSION, ROLE_EMISSION, &g->emission) &&
+    return colour(b, beauty, ROLE_BEAUTY, &g->beauty) && colour(b, NEED_EMISSION, ROLE_EMISSION, &g->emission) &&
            colour(b, NEED_DIFFUSE_LIGHT, ROLE_DIFFUSE_DIRECT, &g->diffuse_direct) && material(b);
 }

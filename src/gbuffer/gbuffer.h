@@ -61,10 +61,10 @@ typedef struct gbuffer {
 // face away slightly (dot(n, ray) <= 0.1) or, agreeing with the surface, more.
 //
 // Coverage is 1 away from the background. Within one pixel (3 x 3) of it, it is alpha where alpha varies over the picture, else
-// the length of the normal where the renderer averages normals (or, if that is more, the albedo over that of a whole pixel of equal
-// chroma within two pixels), else whether there is a surface. A pixel with coverage > 0 and
-// depth 0 (the renderer's one sample of position missed the surface that the averaged layers show) keeps depth 0, and its normal
-// is the averaged one, renormalised: a later pass fills its layers from the nearest valid neighbour with a similar normal.
+// the length of the normal where the renderer averages normals (or, if that is more, the albedo over that of a whole pixel of
+// equal chroma within two pixels), else whether there is a surface. A pixel with coverage > 0 and depth 0 (the renderer's one
+// sample of position missed the surface that the averaged layers show) keeps depth 0, and its normal is the averaged one,
+// renormalised: a later pass fills its layers from the nearest valid neighbour with a similar normal.
 //
 // Depth is P's camera-space z. Where P was sampled more than 0.02 pixels off its pixel's centre it is instead where the centre's
 // ray meets the plane (P, N), unless that plane is seen at a grazing angle (cosine below 0.01; below 0.1 where the depths
