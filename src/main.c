@@ -88,7 +88,10 @@ static bool check_targets(const options *o, error *e)
 static bool run(const options *o, log_t *log, error *e)
 {
     job j;
-    bool ok = job_open(&j, o, log, e) && check_targets(o, e);
+    // A single frame is read while the context opens; what was made before is compared with the device first.
+    bool alone = !batch_is(o) && !o->skip_existing;
+    if (alone) job_init(&j, o, log);
+    bool ok = (alone || job_open(&j, o, log, e)) && check_targets(o, e);
     j.stop = &stop_signal;
     j.no_floats = !o->preview;
     if (ok) ok = batch_is(o) ? batch_run(&j, e) : run_frame(&j, e);

@@ -149,10 +149,12 @@ static bool open_first(gpu *g, EGLDeviceEXT *devices, int count)
     return try_display(g, eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL), "EGL surfaceless");
 }
 
+void gpu_set_up(void) { cache_point_mesa(); }
+
 bool gpu_open(gpu *g, int device, log_t *log, error *e)
 {
     *g = (gpu){0};
-    cache_point_mesa();
+    gpu_set_up();
     if (!have_egl())
         return err_set(e, ERR_GL, NULL, NULL,
                        "libEGL.so.1 cannot be loaded; install a GL driver (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri)");

@@ -33,6 +33,9 @@ typedef struct gpu_device {
     bool software, usable;
 } gpu_device;
 
+// What changes the environment of the process (Mesa's cache folder): before the first thread starts. gpu_open makes up for it.
+void gpu_set_up(void);
+
 // Opens device number `device` (as listed), or with -1 the first usable one in the order of gpu/choose.h, falling back to the
 // surfaceless platform. Says on the log which one, and warns when a software device is taken where an NVIDIA GPU lacks its
 // driver.

@@ -1,6 +1,7 @@
 #include "pipeline/frame.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -37,9 +38,15 @@ static void lap(frame_result *r, stage s, stopwatch *since)
     *since = t;
 }
 
-bool job_open(job *j, const options *o, log_t *log, error *e)
+void job_init(job *j, const options *o, log_t *log)
 {
     *j = (job){.o = o, .log = log, .threads = o->threads > 0 ? o->threads : threads_default()};
+    gpu_set_up();
+}
+
+bool job_open(job *j, const options *o, log_t *log, error *e)
+{
+    job_init(j, o, log);
     if (!colour_config(o->ocio))
         log_info(log, "colour: no OpenColorIO config, so beauty, albedo and environment count as linear");
     return gpu_open(&j->g, o->device, log, e);
@@ -134,38 +141,91 @@ static bool list_views(const job *j, frame_result *r, error *e)
     return true;
 }
 
-// Refuses, before any pixel is read, a frame that the device or the memory cannot hold. The bytes a pixel are the peak measured
-// with 13 channels and four layers, images of a software renderer included.
-static bool fits(const job *j, const frame_result *r, error *e)
+static int larger_side(const frame_result *r)
 {
-    const double bytes = j->g.software ? 230.0 : 200.0, gib = 1024.0 * 1024.0 * 1024.0;
     const box2 w = r->file->parts[r->resolution.main_part].data_window;
-    int width = w.x1 - w.x0 + 1, height = w.y1 - w.y0 + 1;
-    double needed = bytes * width * height, available = (double)mem_available();
-    if (j->g.max_size > 0 && (width > j->g.max_size || height > j->g.max_size))
-        return err_set(
-            e, ERR_GL, r->file->path, NULL,
-            "%d x %d pixels are more than this GL device's %d a side; cut the frame into parts (oiiotool --cut) and filter those",
-            width, height, j->g.max_size);
+    return box2_width(w) > box2_height(w) ? box2_width(w) : box2_height(w);
+}
+
+// Refuses, before any pixel is read, a frame that the memory cannot hold. The bytes a pixel are the peak measured with 13
+// channels and four layers, images of a software renderer included.
+static bool fits_memory(const frame_result *r, error *e)
+{
+    const double bytes = 230.0, gib = 1024.0 * 1024.0 * 1024.0;
+    const box2 w = r->file->parts[r->resolution.main_part].data_window;
+    double needed = bytes * box2_width(w) * box2_height(w), available = (double)mem_available();
     if (needed <= available) return true;
     return err_set(
         e, ERR_MEMORY, r->file->path, NULL,
         "%d x %d pixels need about %.1f GiB and this machine has %.1f GiB free; cut the frame into parts (oiiotool --cut) "
         "and filter those",
-        width, height, needed / gib, available / gib);
+        box2_width(w), box2_height(w), needed / gib, available / gib);
 }
 
-bool frame_read_files(const job *j, const char *const *inputs, int count, frame_result *r, error *e)
+// The same for the device.
+static bool fits_device(const job *j, const frame_result *r, error *e)
+{
+    const box2 w = r->file->parts[r->resolution.main_part].data_window;
+    if (j->g.max_size <= 0 || larger_side(r) <= j->g.max_size) return true;
+    return err_set(
+        e, ERR_GL, r->file->path, NULL,
+        "%d x %d pixels are more than this GL device's %d a side; cut the frame into parts (oiiotool --cut) and filter those",
+        box2_width(w), box2_height(w), j->g.max_size);
+}
+
+// The headers, and what will be made of them.
+static bool begin_reading(const job *j, const char *const *inputs, int count, frame_result *r, error *e)
 {
     *r = (frame_result){0};
     stopwatch t = read_clocks();
     bool ok = exr_file_open_all(inputs, count, &r->file, e) && list_views(j, r, e);
     for (frame_result *v = r; ok && v; v = v->next_view) ok = resolve_view(j, v, e);
-    if (!ok || !fits(j, r, e) || !exr_file_load(r->file, j->threads, e)) return false;
+    lap(r, STAGE_READ, &t);
+    return ok && fits_memory(r, e);
+}
+
+static bool finish_reading(const job *j, frame_result *r, error *e)
+{
+    stopwatch t = read_clocks();
+    bool ok = exr_file_load(r->file, j->threads, e);
     lap(r, STAGE_READ, &t);
     for (frame_result *v = r; ok && v; v = v->next_view) ok = build_view(j, v, e);
     lap(r, STAGE_RESOLVE, &t);
     return ok;
+}
+
+bool frame_read_files(const job *j, const char *const *inputs, int count, frame_result *r, error *e)
+{
+    return begin_reading(j, inputs, count, r, e) && fits_device(j, r, e) && finish_reading(j, r, e);
+}
+
+typedef struct reading {
+    const job *j;
+    frame_result *r;
+    error e;
+    bool ok;
+} reading;
+
+static void *read_beside(void *arg)
+{
+    reading *d = arg;
+    d->ok = finish_reading(d->j, d->r, &d->e);
+    return NULL;
+}
+
+// Any GL 4.5 device takes images of 16384 a side; what is larger waits for the device's own word.
+static bool read_and_open(job *j, const char *const *inputs, int count, frame_result *r, error *e)
+{
+    enum { SURE = 16384 };
+    reading d = {.j = j, .r = r};
+    pthread_t thread;
+    if (!begin_reading(j, inputs, count, r, e)) return false;
+    bool beside = larger_side(r) <= SURE && pthread_create(&thread, NULL, read_beside, &d) == 0;
+    bool opened = gpu_open(&j->g, j->o->device, j->log, e);
+    if (beside) pthread_join(thread, NULL);
+    if (opened && !beside) return fits_device(j, r, e) && finish_reading(j, r, e);
+    if (opened && !d.ok) *e = d.e;
+    return opened && d.ok;
 }
 
 // What the rooms below have not said themselves: channels, camera and measurements are theirs.
@@ -356,7 +416,8 @@ bool frame_run(job *j, const char *input, const char *output, frame_result *r, e
 bool frame_run_files(job *j, const char *const *inputs, int count, const char *output, frame_result *r, error *e)
 {
     *r = (frame_result){0};
-    if (!frame_check_output(inputs, count, output, e) || !frame_read_files(j, inputs, count, r, e)) return false;
+    if (!frame_check_output(inputs, count, output, e)) return false;
+    if (!(j->g.context ? frame_read_files(j, inputs, count, r, e) : read_and_open(j, inputs, count, r, e))) return false;
     progress_step(j->progress);
     if (job_stopped(j) || !frame_filter(j, r, e)) return false;
     progress_step(j->progress);

@@ -39,7 +39,7 @@ typedef struct frame_result {
     gbuffer gb;
     plan plan;
     pass_settings set;
-    double wall_ms[STAGE_COUNT], cpu_ms[STAGE_COUNT];
+    double wall_ms[STAGE_COUNT], cpu_ms[STAGE_COUNT]; // CPU of the whole process: with what runs beside the stage
     pass_timing timings[PASS_MAX_TIMINGS];
     int timing_count;
     pass_upload uploads[PASS_MAX_UPLOADS];
@@ -49,17 +49,21 @@ typedef struct frame_result {
     plane_set planes;  // that stood in for what the camera does not see; none where the method has no use for them
     int tile_size, tiles, tiles_occupied; // tiles without a surface are not dispatched (but for the composite of a background)
     size_t clamped;                       // samples of ours that a half could not hold
-    void *samples[LAYER_COUNT]
-                 [LAYER_CHANNELS];  // by channel, width * height of types[layer], as they are written; NULL where not made
-    sample_type types[LAYER_COUNT]; //
-    float *layers[LAYER_COUNT];     // the same before rounding, interleaved; NULL where not made or not kept
-    float *stored_sh[SH_IMAGES];    // --from-sh: what the input brought along, else NULL
+    // By channel, width * height of types[layer], as they are written, and the same as floats before rounding, interleaved. NULL
+    // where a layer was not made, or its floats not kept.
+    void *samples[LAYER_COUNT][LAYER_CHANNELS];
+    sample_type types[LAYER_COUNT];
+    float *layers[LAYER_COUNT];
+    float *stored_sh[SH_IMAGES]; // --from-sh: what the input brought along, else NULL
     bool second_part;
     const char *view;               // the stereo view this is, the file's string; NULL without views
     struct frame_result *next_view; // owned; shares the file
 } frame_result;
 
-// stop, progress and no_floats are the caller's to set afterwards.
+// A job without a context yet, for frame_run_files alone, which opens it while the file is being read. stop, progress and
+// no_floats are the caller's to set afterwards. Before any thread of ours starts.
+void job_init(job *j, const options *o, log_t *log);
+// The same with the context.
 bool job_open(job *j, const options *o, log_t *log, error *e);
 // True if the run was asked to stop.
 bool job_stopped(const job *j);
