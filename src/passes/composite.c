@@ -27,7 +27,6 @@ bool pass_composite(pass_context *c, error *e)
     if (!pass_make(c, &c->composite, GL_RGBA32F, 0.0f, e)) return false;
     const pass_binding bindings[] = {
         {2, s->relight && s->visibility_mode ? &c->visibility : &c->occlusion, GL_READ_ONLY},
-        {3, &c->composite, GL_WRITE_ONLY},
         {4, &c->albedo, GL_READ_ONLY},
         {5, s->relight ? &c->radiance : &c->diffuse_direct, GL_READ_ONLY},
         {6, &c->indirect, GL_READ_ONLY},
@@ -36,9 +35,11 @@ bool pass_composite(pass_context *c, error *e)
         {9, &c->diffuse_share, GL_READ_ONLY},
         {10, &c->emission, GL_READ_ONLY},
         {11, &c->coverage, GL_READ_ONLY},
-        {12, &c->diffuse, GL_WRITE_ONLY},
         {13, &c->depthmask, GL_READ_ONLY},
+        {3, &c->composite, GL_WRITE_ONLY},
     };
+    const gpu_image *targets[] = {&c->composite, c->want_diffuse ? &c->diffuse : NULL};
     // Background pixels have a composite too.
-    return pass_run(c, "composite", defines, &params, sizeof params, bindings, 12, true, e);
+    return s->relight ? pass_draw(c, "composite", defines, &params, sizeof params, bindings, 10, targets, 2, true, e)
+                      : pass_run(c, "composite", defines, &params, sizeof params, bindings, 11, true, e);
 }
