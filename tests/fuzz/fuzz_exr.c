@@ -56,7 +56,10 @@ static bool read_frame(const char *path, error *e)
     log_t log;
     log_init(&log, LOG_QUIET);
     if (!exr_file_open(path, &f, e)) goto out;
-    bool resolved = resolve_channels(f, &(resolve_options){0}, &r, &log, e);
+    // The last eye of a stereo file, if it is one.
+    const exr_part *first = &f->parts[0];
+    resolve_options ro = {.view = first->view_count ? first->views[first->view_count - 1] : NULL};
+    bool resolved = resolve_channels(f, &ro, &r, &log, e);
     for (int p = 0; p < f->part_count; p++)
         for (int c = 0; c < f->parts[p].channel_count; c++) f->parts[p].channels[c].wanted = true;
     if (!resolved || !exr_file_load(f, 1, e)) goto out;

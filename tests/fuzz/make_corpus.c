@@ -1,5 +1,5 @@
 // make_corpus FOLDER: small, whole EXR files for fuzz_exr to start from: every compression that is read, both naming conventions,
-// half positions, averaged edges, orthographic and depth-only frames, two parts.
+// half positions, averaged edges, orthographic and depth-only frames, two parts, two eyes.
 #include <stdio.h>
 #include <string.h>
 
@@ -44,6 +44,27 @@ static bool two_parts(const char *folder, error *e)
     return exr_write(path, parts, 2, 1, e);
 }
 
+static bool two_eyes(const char *folder, error *e)
+{
+    char path[4096];
+    static float depth[12 * 8];
+    static const char *const names[] = {"Z.left.V", "Z.right.V", "right.N.X", "N.Y", "R", "right.R"};
+    exr_out_channel channels[6];
+    exr_out_attr views = {.name = "multiView", .kind = EXR_OUT_STRINGS, .strings = {"left", "right"}, .string_count = 2};
+    exr_out_part part = {.data_window = {0, 0, 11, 7},
+                         .display_window = {0, 0, 11, 7},
+                         .pixel_aspect = 1.0f,
+                         .compression = EXR_COMPRESSION_ZIP,
+                         .channels = channels,
+                         .channel_count = 6,
+                         .attributes = &views,
+                         .attribute_count = 1};
+    for (int i = 0; i < 12 * 8; i++) depth[i] = 2.0f + 0.1f * (float)(i % 12);
+    for (int i = 0; i < 6; i++) channels[i] = (exr_out_channel){names[i], SAMPLE_FLOAT, depth};
+    snprintf(path, sizeof path, "%s/eyes.exr", folder);
+    return exr_write(path, &part, 1, 1, e);
+}
+
 int main(int argc, char **argv)
 {
     error e = {0};
@@ -62,7 +83,7 @@ int main(int argc, char **argv)
              &e) &&
          one(argv[1], "depth", false, &(scene_exr_options){.no_position = true, .radial_depth = true, .compression = zip}, &e) &&
          one(argv[1], "position", false, &(scene_exr_options){.no_depth = true, .no_normal = true, .no_albedo = true}, &e) &&
-         two_parts(argv[1], &e);
+         two_parts(argv[1], &e) && two_eyes(argv[1], &e);
     if (!ok) fprintf(stderr, "make_corpus: %s\n", argc == 2 ? e.message : "usage: make_corpus FOLDER");
     return !ok;
 }
