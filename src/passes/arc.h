@@ -18,9 +18,8 @@ typedef struct arc_params {
 // Slices and steps a side for a number of samples = slices x 2 x steps.
 void arc_grid(int samples, int *slices, int *steps);
 arc_params arc_params_of(const pass_context *c);
-
-// For a march without a radius: its square is still a float.
-#define HUGE_LENGTH 1e15f
+// For marches without a radius: light comes from any distance.
+arc_params arc_unlimited_params_of(const pass_context *c);
 
 // What all marches read, once a frame: the planes and their image, the packed surfaces.
 bool arc_make_inputs(pass_context *c, error *e);
