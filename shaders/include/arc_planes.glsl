@@ -7,6 +7,7 @@
 layout(rgba32f, binding = 7) readonly uniform image2D planes_image;
 
 const int CHORDS = 6; // directions tested of the arc that a plane could block
+const float BELIEVED_PLANE = 1.5; // beyond the frame a plane is believed up to here, in half widths of its support
 const float ROOM = 0.004; // of the depth: as far as a plane may lie off its own surface, and a little more
 
 // True if the recorded surface at a pixel lies in front of depth z, or (with a negative sign of ROOM) at it.
@@ -27,8 +28,7 @@ bool allows(Border b, vec4 equation) {
     return hidden(b.recorded, z > 0.0 ? z : 1e30, -ROOM);
 }
 
-// Whether the plane's point X counts; `here`: its place on the support, -1 .. 1. Without a radius a plane is not believed farther from
-// its support than the support is wide.
+// Whether the plane's point X counts; `here`: its place on the support, -1 .. 1.
 bool stands(int plane, vec3 X, vec2 here, bool beyond_frame) {
     vec2 screen = screen_of(X);
     // Compared before they become integers, which hold no screen coordinate of a point near the eye.
@@ -38,11 +38,7 @@ bool stands(int plane, vec3 X, vec2 here, bool beyond_frame) {
     uint row = uint((cell.y & 2) == 0 ? ((cell.y & 1) == 0 ? rows.x : rows.y) : ((cell.y & 1) == 0 ? rows.z : rows.w));
     bool supported = max(abs(here.x), abs(here.y)) <= 1.0 && ((row >> cell.x) & 1u) == 1u;
     bool behind = hidden(imageLoad(depth_image, q).r, X.z, ROOM);
-#ifdef LIMITED
-    return inside ? supported && behind : beyond_frame;
-#else
-    return inside ? supported && behind : beyond_frame && max(abs(here.x), abs(here.y)) <= 1.5;
-#endif
+    return inside ? supported && behind : beyond_frame && max(abs(here.x), abs(here.y)) <= BELIEVED_PLANE;
 }
 
 void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, Lines lines, vec3 P, float place, float jitter) {

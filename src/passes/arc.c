@@ -4,9 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
-static const float KAPPA = 1.0f;               // a run is as thick as it is wide
-static const float TOLERANCE = 2.1f;           // a run may turn by 65 degrees between two steps within the radius,
-static const float UNLIMITED_TOLERANCE = 1.3f; // by 52 where steps are long
+static const float KAPPA = 1.0f; // a run is as thick as it is wide
+// How far a run may turn between two steps: the tangent of 52 degrees, and within the radius, where many steps are short, of 65.
+static const float TOLERANCE = 1.3f, SHORT_STEP_TOLERANCE = 2.1f;
 
 // A filter over the neighbours averages slices but cannot find what steps have missed, so small budgets go into steps: 1 x 8, 1 x
 // 16 and 2 x 16 have lower errors at the same time than 2 x 4, 2 x 8 and 4 x 8. Large ones, which no filter follows, stay near
@@ -27,13 +27,14 @@ arc_params arc_params_of(const pass_context *c)
         .kappa = s->thickness_fixed ? 0.0f : KAPPA,
         .seed = s->seed,
         .planes = c->planes.count,
-        .tolerance = TOLERANCE,
         .level = (float)s->env_level,
         .strength = (float)s->bounce_strength,
     };
     if (s->thickness_fixed) p.thin = p.thickness;
     arc_grid(s->samples, &p.slices, &p.steps);
     p.inverse_steps = 1.0f / (float)p.steps;
+    p.tolerance =
+        fmaxf(TOLERANCE, fminf(SHORT_STEP_TOLERANCE, 0.5f + 0.1f * (float)p.steps)); // 8 steps a side are long, 16 short
     return p;
 }
 
@@ -41,7 +42,7 @@ arc_params arc_unlimited_params_of(const pass_context *c)
 {
     arc_params p = arc_params_of(c);
     p.radius = 1e15f; // its square is still a float
-    p.tolerance = UNLIMITED_TOLERANCE;
+    p.tolerance = TOLERANCE;
     return p;
 }
 
