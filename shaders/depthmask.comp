@@ -23,20 +23,22 @@ float normalised(float depth) { return clamp((depth - params.near) * params.scal
 
 float gaussian(int i) { return exp(-0.5 * float(i * i) / (params.sigma * params.sigma)); }
 
+// Near the borders the Gaussian is cut alike on both sides: one-sided it would see an edge in every slope.
+int reach_at(int x, int size) { return min(params.radius, min(x, size - 1 - x)); }
+
 void main() {
     ivec2 p = this_pixel();
     if (!in_tile(p)) return;
     vec2 sums = vec2(0.0);
 #ifdef DOWN
     float depth = depth_at(p), mask = 0.0;
-    for (int i = -params.radius; depth != 0.0 && i <= params.radius; i++) {
-        ivec2 q = p + ivec2(0, i);
-        if (in_frame(q)) sums += gaussian(i) * imageLoad(sums_image, q).rg;
-    }
+    int reach = depth != 0.0 ? reach_at(p.y, frame_size.y) : -1;
+    for (int i = -reach; i <= reach; i++) sums += gaussian(i) * imageLoad(sums_image, p + ivec2(0, i)).rg;
     if (depth != 0.0) mask = sums.r / sums.g - normalised(depth);
     imageStore(mask_image, p, vec4(mask < -1e-6 ? mask : 0.0)); // not the rounding of the sums
 #else
-    for (int i = -params.radius; i <= params.radius; i++) {
+    int reach = reach_at(p.x, frame_size.x);
+    for (int i = -reach; i <= reach; i++) {
         float depth = depth_at(p + ivec2(i, 0));
         if (depth != 0.0) sums += gaussian(i) * vec2(normalised(depth), 1.0);
     }
