@@ -57,7 +57,7 @@ bool bench_middle(bench_scene *b, const char *dir, error *e)
     b->middle = mem_zero(1, sizeof *b->middle, e);
     if (!b->middle || !proxies_load(path, &b->proxies, e)) return false;
     b->middle->radius = b->radius;
-    b->middle->env = b->env, b->middle->env_image = b->env_image; // borrowed
+    b->middle->env = b->env, b->middle->env_image = b->env_image, b->middle->sunless = b->sunless; // borrowed
     cut_gbuffer(&b->gb, c, &b->middle->gb, e);
     cut_sample(&b->s, c, &b->middle->s, e);
     return e->code == ERR_NONE;
