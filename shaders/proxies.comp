@@ -44,7 +44,6 @@ layout(rgba32f, binding = 11) uniform image2D sh4_image;
 #endif
 #endif
 
-const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 const float UNLIMITED = 1e15;
 
 // Cosine-weighted share of the hemisphere inside a cone: c the cosine between its axis and the normal, cs and sn the cosine and sine of

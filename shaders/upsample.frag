@@ -14,6 +14,7 @@ layout(std140, binding = 1) uniform Params {
     ivec2 small_size;
     float sharpness; // plane distance, in footprints of a small pixel, at which the weight has fallen to exp(-1/2)
     int unused;
+    vec4 light[9]; // OPEN_LIGHT: radiance coefficients of what makes colour 0
 } params;
 // Copies made before main: llvmpipe reads a uniform inside any control flow once for every lane.
 ivec2 small_size = ivec2(params.small_size.x, params.small_size.y);
@@ -111,7 +112,7 @@ Values lost(ivec2 base, vec3 P, vec3 N, float scale, bool wanted) {
     ivec2 best = best_of(base, P, N, scale, wanted);
     for (int n = best.x >= 0 ? 0 : 1; n < 1; n++) v = load(best);
 #ifdef OPEN_LIGHT
-    for (int n = wanted && best.x < 0 ? 0 : 1; n < 1; n++) v.colour0 = vec4(sh_irradiance_over_pi(to_map(N)), 0.0);
+    for (int n = wanted && best.x < 0 ? 0 : 1; n < 1; n++) v.colour0 = vec4(sh_irradiance_over_pi(params.light, to_map(N)), 0.0);
 #endif
     return v;
 }

@@ -3,7 +3,6 @@
 // The slice in CELLS pieces of equal angle; each looks the environment up once, at a level of its own solid angle, and weighs it by
 // its share of open sectors. `all` is what arrives with nothing in the way.
 const int CELLS = 24;
-const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 
 struct Light {
     vec3 open;

@@ -1,4 +1,2 @@
 // What a surface gets of a sun that nothing hides.
-const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
-
 vec3 sunlight(int i, vec3 N) { return max(dot(N, stored.sun_direction[i].xyz), 0.0) * stored.sun_light[i].rgb; }

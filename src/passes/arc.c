@@ -4,7 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const float KAPPA = 1.0f; // a run is as thick as it is wide
+static const float HUGE_LENGTH = 1e15f; // its square is still a float
+static const float KAPPA = 1.0f;        // a run is as thick as it is wide
 // How far a run may turn between two steps: the tangent of 52 degrees, and within the radius, where many steps are short, of 65.
 static const float TOLERANCE = 1.3f, SHORT_STEP_TOLERANCE = 2.1f;
 
@@ -23,7 +24,7 @@ arc_params arc_params_of(const pass_context *c)
     const pass_settings *s = &c->set;
     arc_params p = {
         .radius = (float)s->radius,
-        .thickness = isinf(s->thickness) ? 1e15f : (float)s->thickness,
+        .thickness = isinf(s->thickness) ? HUGE_LENGTH : (float)s->thickness,
         .kappa = s->thickness_fixed ? 0.0f : KAPPA,
         .seed = s->seed,
         .planes = c->planes.count,
@@ -41,7 +42,7 @@ arc_params arc_params_of(const pass_context *c)
 arc_params arc_unlimited_params_of(const pass_context *c)
 {
     arc_params p = arc_params_of(c);
-    p.radius = 1e15f; // its square is still a float
+    p.radius = HUGE_LENGTH;
     p.tolerance = TOLERANCE;
     return p;
 }
@@ -85,13 +86,16 @@ static bool make_sunless(pass_context *c, error *e)
     if (l->ready || !c->env || c->env->white) return true;
     environment rest;
     if (!sun_split(c->env, c->threads, &l->suns, &rest, c->log, e)) return false;
+    if (l->suns.count > 0) {
+        memcpy(l->rest, rest.sh, sizeof l->rest);
+        bool ok = pass_upload_environment(c->g, &rest, &l->map, e);
+        environment_free(&rest);
+        if (!ok) return false;
+        log_info(c->log, "environment: %d small bright source%s treated apart", l->suns.count,
+                 l->suns.count > 1 ? "s are" : " is");
+    }
     l->ready = true;
-    if (l->suns.count == 0) return true;
-    log_info(c->log, "environment: %d small bright source%s treated apart", l->suns.count, l->suns.count > 1 ? "s are" : " is");
-    memcpy(l->rest, rest.sh, sizeof l->rest);
-    bool ok = pass_upload_environment(c->g, &rest, &l->map, e);
-    environment_free(&rest);
-    return ok;
+    return true;
 }
 
 // ---- the passes
@@ -137,7 +141,8 @@ static bool run_light(pass_context *c, error *e)
     if (!pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e)) return false;
     if (c->want_visibility && !pass_make(c, &c->visibility, GL_R32F, 1.0f, e)) return false;
     gpu_image whole = c->environment;
-    if (c->sunless->map.id) c->environment = c->sunless->map;
+    c->suns_apart = c->sunless->map.id != 0;
+    if (c->suns_apart) c->environment = c->sunless->map;
     const pass_binding bindings[] = {{2, &c->visibility, GL_WRITE_ONLY},
                                      {3, &c->radiance, GL_WRITE_ONLY},
                                      {6, &c->surface, GL_READ_ONLY},

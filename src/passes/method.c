@@ -17,7 +17,6 @@ const method methods[] = {
         .fills_bent = true,
         .bounce = "arc",
         .run = pass_arc,
-        .sharp = pass_suns,
     },
     {
         .name = "ssdo",

@@ -17,7 +17,6 @@ typedef struct method {
     bool needs_mesh;       // sees the scene's own surfaces: --mesh
     const char *bounce;    // its own bounce, NULL for none
     bool (*run)(pass_context *c, error *e);
-    bool (*sharp)(pass_context *c, error *e); // adds what no filter should touch; NULL: nothing
 } method;
 
 extern const method methods[];               // that work from the picture alone; ends with a NULL name

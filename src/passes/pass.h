@@ -96,6 +96,7 @@ typedef struct pass_context {
     pass_sunless *sunless;             // borrowed, lives as long as the batch
     struct trace_scene *trace;         // the same; for raytrace
     int threads;
+    bool suns_apart;  // radiance and visibility lack the suns of `sunless`, which bear no filter, until pass_suns adds them
     plane_set planes; // found by the pass that uses them
 
     GLuint frame_uniforms, params_uniforms;
@@ -144,9 +145,9 @@ bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, er
 bool pass_raytrace(pass_context *c, error *e); // -> occlusion, radiance, visibility, indirect
 bool pass_raytrace_bounce(pass_context *c, error *e);
 bool pass_alchemy(pass_context *c, error *e);     // -> occlusion (1 - S, before its bounds)
-bool pass_arc(pass_context *c, error *e);         // -> occlusion, bent, radiance
+bool pass_arc(pass_context *c, error *e);         // -> occlusion, bent, radiance and visibility (suns_apart)
 bool pass_arc_bounce(pass_context *c, error *e);  // radiance or beauty, albedo -> indirect
-bool pass_suns(pass_context *c, error *e);        // after pass_arc and its filter: radiance, visibility: in place
+bool pass_suns(pass_context *c, error *e);        // radiance, visibility: in place, if their suns are apart
 bool pass_gtao(pass_context *c, error *e);        // -> occlusion, bent
 bool pass_bitmask(pass_context *c, error *e);     // -> occlusion, bent
 bool pass_hemisphere(pass_context *c, error *e);  // -> occlusion

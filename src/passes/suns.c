@@ -64,8 +64,7 @@ static void put_suns(const pass_context *c, arc_params *p)
 
 bool pass_suns(pass_context *c, error *e)
 {
-    bool radiance = c->radiance.id, visibility = c->visibility.id;
-    if (!(radiance || visibility) || c->sunless->suns.count == 0) return true;
+    if (!c->suns_apart) return true;
     if (!arc_make_inputs(c, e)) return false;
     arc_params params = arc_unlimited_params_of(c);
     params.kappa *= SUN_KAPPA;
@@ -78,7 +77,8 @@ bool pass_suns(pass_context *c, error *e)
     const pass_binding add[] = {{2, &c->visibility, GL_READ_WRITE}, {3, &light, GL_READ_ONLY}, {4, &c->radiance, GL_READ_WRITE}};
     bool ok = pass_make(c, &light, GL_RGBA32F, 0.0f, e) &&
               pass_run(c, "suns", arc_with_planes(c, "", buf, sizeof buf), &params, sizeof params, march, 3, false, e) &&
-              pass_run(c, "suns_add", visibility ? "VISIBILITY 1\n" : NULL, &params, sizeof params, add, 3, false, e);
+              pass_run(c, "suns_add", c->visibility.id ? "VISIBILITY 1\n" : NULL, &params, sizeof params, add, 3, false, e);
     gpu_image_free(&light);
+    c->suns_apart = !ok;
     return ok;
 }

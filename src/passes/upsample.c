@@ -18,7 +18,10 @@ static bool bring(pass_context *c, const pass_context *small, const draw *d, err
         int size[2];
         float sharpness;
         int unused;
-    } params = {{small->width, small->height}, SHARPNESS, 0};
+        float light[9][4];
+    } params = {.size = {small->width, small->height}, .sharpness = SHARPNESS};
+    for (int i = 0; d->open_light && i < 9; i++)
+        for (int k = 0; k < 3; k++) params.light[i][k] = (float)(small->suns_apart ? c->sunless->rest[i][k] : c->env->sh[i][k]);
     pass_binding bindings[6] = {{2, &small->depth, GL_READ_ONLY}, {3, &small->normal, GL_READ_ONLY}};
     char defines[64];
     int count = 2;
@@ -40,6 +43,7 @@ bool pass_upsample(pass_context *c, const pass_context *small, error *e)
     gpu_image *to[3 + SH_IMAGES] = {&c->radiance, &c->indirect, &c->bent};
     draw d = {{&small->occlusion, small->visibility.id ? &small->visibility : NULL}, {&c->occlusion, &c->visibility}, false};
     bool waiting = true; // the scalars go with the first
+    c->suns_apart = small->suns_apart;
     for (int k = 0; k < SH_IMAGES; k++) from[3 + k] = &small->sh[k], to[3 + k] = &c->sh[k];
     for (int k = 0, n = 2; k < 3 + SH_IMAGES || waiting; k++) {
         if (k < 3 + SH_IMAGES && from[k]->id && !to[k]->id) {

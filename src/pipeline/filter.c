@@ -26,11 +26,6 @@ static bool run_method(pass_context *c, const plan *p, error *e)
     return pass_blur(c, &c->occlusion, &c->visibility, &c->radiance, e) && (!c->bent.id || pass_blur(c, NULL, NULL, &c->bent, e));
 }
 
-// What bears no filter.
-static bool has_sharp(const pass_context *c, const plan *p) { return p->method->sharp && c->sunless->suns.count > 0; }
-
-static bool add_sharp(pass_context *c, const plan *p, error *e) { return !has_sharp(c, p) || p->method->sharp(c, e); }
-
 static bool finish_light(pass_context *c, const plan *p, error *e)
 {
     if (!pass_proxies(c, e)) return false;
@@ -78,13 +73,13 @@ static bool run_half(pass_context *c, const plan *p, error *e)
     small.want_bent = c->want_bent;
     ok = run_method(&small, p, e);
     // All layers go up together, unless the bounce needs what is done to them at either size.
-    bool early = p->bounce && (p->look || p->irradiance || (c->proxies && c->proxies->count > 0) || has_sharp(&small, p));
+    bool early = p->bounce && (p->look || p->irradiance || (c->proxies && c->proxies->count > 0) || small.suns_apart);
     ok = ok && (!early || pass_upsample(c, &small, e));
-    if (ok && p->bounce) ok = (!early || (add_sharp(&small, p, e) && finish_light(&small, p, e))) && run_bounce(&small, p, e);
+    if (ok && p->bounce) ok = (!early || (pass_suns(&small, e) && finish_light(&small, p, e))) && run_bounce(&small, p, e);
     ok = ok && (early ? pass_upsample_indirect(c, &small, e) : pass_upsample(c, &small, e));
     take_times(c, &small);
     pass_end(&small);
-    ok = ok && add_sharp(c, p, e) && finish_light(c, p, e);
+    ok = ok && pass_suns(c, e) && finish_light(c, p, e);
 out:
     gbuffer_free(&gb);
     return ok;
@@ -93,7 +88,7 @@ out:
 static bool run_passes(pass_context *c, const plan *p, error *e)
 {
     if (c->set.half ? !run_half(c, p, e)
-                    : !(run_method(c, p, e) && add_sharp(c, p, e) && finish_light(c, p, e) && run_bounce(c, p, e)))
+                    : !(run_method(c, p, e) && pass_suns(c, e) && finish_light(c, p, e) && run_bounce(c, p, e)))
         return false;
     // A beauty's light on unseen spheres is unknown: they send none.
     if (p->bounce && c->set.relight && !pass_proxies_bounce(c, e)) return false;

@@ -285,7 +285,7 @@ static void the_example_moves_towards_truth(void **state)
            a.occlusion, b.occlusion, a.radiance, b.radiance, a.indirect, b.indirect);
     assert_true(b.occlusion < 0.65 * a.occlusion);
     assert_true(b.radiance < 0.5 * a.radiance);
-    assert_true(b.indirect < 0.9 * a.indirect); // arc guesses light from unseen sides, too
+    assert_true(b.indirect < 0.9 * a.indirect); // .84; .79 if what is hidden sent all that its cover does
     if (getenv("SSDO_UPDATE_SAMPLES")) write_example(&s, &v, list, count);
     rig_free_result(&without), rig_free_result(&with);
     layer_free(&l);
