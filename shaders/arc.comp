@@ -1,11 +1,12 @@
 #version 450 core
-// lint: HORIZON | BITMASK | HORIZON BENT | RUNS | RUNS PLANES BENT | RUNS PLANES | RUNS PLANES LIGHT | RUNS LIGHT VISIBILITY | RUNS PLANES BOUNCE
+// lint: HORIZON | BITMASK | HORIZON BENT | RUNS | RUNS PLANES BENT | RUNS PLANES | RUNS PLANES LIGHT | RUNS LIGHT VISIBILITY | RUNS PLANES BOUNCE | RUNS PLANES LIGHT BOUNCE EXITANT
 // Slices around the view vector, each a set of 64 sectors of equal cosine weight (THEORY.md 2 and 3). With the weight of a slice
 // w = |n_p| (cos n + n sin n), and sums over slices:
 //   occlusion = sum w (open share) / sum w                          so that an empty plane is exactly 1
 //   BENT:   bent = 2/3 N - sum w (blocked directions) / sum w        the cosine-weighted mean open direction: N on an empty plane
 //   LIGHT:  radiance = sum w (open share x environment) / sum w,  visibility = its luminance over that of the open sky
-//   BOUNCE: indirect = sum w (blocked share x what the nearest blocker sends) / sum w
+//   BOUNCE: indirect = sum w (blocked share x what the nearest blocker sends) / sum w; with EXITANT the sender is a picture that the
+//           renderer lit, else light that the senders' albedo is still to be multiplied by
 // The sectors are blocked by HORIZON or BITMASK, the older methods, or by RUNS and PLANES, which are `arc`.
 #if !defined(LIGHT) && !defined(BOUNCE)
 #define LIMITED // by the radius; light comes from any distance
@@ -19,9 +20,15 @@
 #include "include/arc_sectors.glsl"
 
 layout(r32f, binding = 2) writeonly uniform image2D scalar_image; // occlusion, or with LIGHT the visibility
-layout(rgba32f, binding = 3) writeonly uniform image2D light_image; // radiance, indirect or bent
-layout(rgba32f, binding = 4) readonly uniform image2D sender_image; // light before albedo, or a beauty
+layout(rgba32f, binding = 3) writeonly uniform image2D light_image; // radiance or bent
+#ifdef BOUNCE
+layout(rgba32f, binding = 4) readonly uniform image2D sender_image;
+#ifdef EXITANT // eight images are all that GL promises
+layout(rgba32f, binding = 5) writeonly uniform image2D indirect_image;
+#else
 layout(rgba32f, binding = 5) readonly uniform image2D albedo_image;
+layout(rgba32f, binding = 3) writeonly uniform image2D indirect_image;
+#endif
 
 // What a surface sends to us. The side that the camera does not see is a guess: it looks our way, and what it sees is much what we
 // see, of which this share.
@@ -30,8 +37,12 @@ vec3 unseen = vec3(0.0);
 
 vec3 sent_by(ivec2 q, bool seen) {
     vec3 L = seen ? imageLoad(sender_image, q).rgb : unseen;
-    return params.exitant == 1 ? L : L * imageLoad(albedo_image, q).rgb;
+#ifndef EXITANT
+    L *= imageLoad(albedo_image, q).rgb;
+#endif
+    return L;
 }
+#endif
 
 #ifdef RUNS
 #include "include/arc_march.glsl"
@@ -48,9 +59,12 @@ vec3 sent_by(ivec2 q, bool seen) {
 #include "include/arc_bent.glsl"
 #endif
 
-void store(ivec2 p, float scalar, vec3 light) {
-#if defined(LIGHT) || defined(BOUNCE) || defined(BENT)
+void store(ivec2 p, float scalar, vec3 light, vec3 indirect) {
+#if defined(LIGHT) || defined(BENT)
     imageStore(light_image, p, vec4(light, 0.0));
+#endif
+#ifdef BOUNCE
+    imageStore(indirect_image, p, vec4(indirect, 0.0));
 #endif
 #if defined(VISIBILITY) || !(defined(LIGHT) || defined(BOUNCE))
     imageStore(scalar_image, p, vec4(scalar));
@@ -62,7 +76,7 @@ void main() {
     if (!in_tile(p)) return;
     float depth = depth_at(p);
     if (depth == 0.0) {
-        store(p, 1.0, vec3(0.0));
+        store(p, 1.0, vec3(0.0), vec3(0.0));
         return;
     }
     vec3 P = position_of(p, depth), N = normal_at(p), V = view_of(P);
@@ -74,8 +88,8 @@ void main() {
 #ifdef LIGHT
     Light light = Light(vec3(0.0), 0.0, 0.0);
 #endif
-#ifdef BOUNCE
     vec3 bounced = vec3(0.0);
+#ifdef BOUNCE
     unseen = UNSEEN * imageLoad(sender_image, p).rgb;
 #endif
 #ifdef BENT
@@ -114,16 +128,15 @@ void main() {
         shut += weight * blocked_moment(side, V, across, n, slots.blocked, noise.y);
 #endif
     }
+    bounced = params.strength * bounced / all;
 #if defined(LIGHT)
     light.open /= all;
     light.open_luminance /= all;
     light.all_luminance /= all;
-    store(p, light.all_luminance > 0.0 ? min(1.0, light.open_luminance / light.all_luminance) : 1.0, light.open);
-#elif defined(BOUNCE)
-    store(p, 0.0, params.strength * bounced / all);
+    store(p, light.all_luminance > 0.0 ? min(1.0, light.open_luminance / light.all_luminance) : 1.0, light.open, bounced);
 #elif defined(BENT)
-    store(p, open / all, 2.0 / 3.0 * N - shut / all);
+    store(p, open / all, 2.0 / 3.0 * N - shut / all, bounced);
 #else
-    store(p, open / all, vec3(0.0));
+    store(p, open / all, vec3(0.0), bounced);
 #endif
 }

@@ -132,36 +132,6 @@ static bool run_occlusion(pass_context *c, const char *defines, error *e)
     return pass_run(c, "arc", arc_with_planes(c, with_bent, buf, sizeof buf), &params, sizeof params, bindings, 4, false, e);
 }
 
-// Light comes from any distance, so its march has no radius.
-static bool run_light(pass_context *c, error *e)
-{
-    arc_params params = arc_unlimited_params_of(c);
-    char buf[128];
-    if (!make_sunless(c, e)) return false;
-    if (!pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e)) return false;
-    if (c->want_visibility && !pass_make(c, &c->visibility, GL_R32F, 1.0f, e)) return false;
-    gpu_image whole = c->environment;
-    c->suns_apart = c->sunless->map.id != 0;
-    if (c->suns_apart) c->environment = c->sunless->map;
-    const pass_binding bindings[] = {{2, &c->visibility, GL_WRITE_ONLY},
-                                     {3, &c->radiance, GL_WRITE_ONLY},
-                                     {6, &c->surface, GL_READ_ONLY},
-                                     {7, &c->plane_image, GL_READ_ONLY}};
-    const char *defines = c->want_visibility ? "RUNS 1\nLIGHT 1\nVISIBILITY 1\n" : "RUNS 1\nLIGHT 1\n";
-    bool ok = pass_run(c, "arc", arc_with_planes(c, defines, buf, sizeof buf), &params, sizeof params, bindings, 4, false, e);
-    c->environment = whole;
-    return ok;
-}
-
-bool pass_gtao(pass_context *c, error *e) { return run_occlusion(c, "HORIZON 1\n", e); }
-bool pass_bitmask(pass_context *c, error *e) { return run_occlusion(c, "BITMASK 1\n", e); }
-
-bool pass_arc(pass_context *c, error *e)
-{
-    if (!arc_make_inputs(c, e) || !run_occlusion(c, "RUNS 1\n", e)) return false;
-    return !(c->want_radiance || c->want_visibility) || run_light(c, e);
-}
-
 // What the planes send: one work group that reads the whole frame's grid.
 static bool light_planes(pass_context *c, const arc_params *params, const gpu_image *sender, const gpu_image *albedo, error *e)
 {
@@ -181,21 +151,48 @@ static bool light_planes(pass_context *c, const arc_params *params, const gpu_im
     return true;
 }
 
-bool pass_arc_bounce(pass_context *c, error *e)
+// Light comes from any distance, so its march has no radius. It serves the sky's light through what is open and the bounce from
+// what is not: both at once where nothing of the one goes into the other.
+static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
 {
     // A picture the renderer lit is what surfaces send; our own radiance still needs their albedo.
-    bool exitant = !c->set.relight;
+    bool exitant = !c->set.relight, visibility = sky && c->want_visibility;
     const gpu_image *sender = exitant ? &c->beauty : &c->radiance, *albedo = exitant ? &c->beauty : &c->albedo;
-    char buf[128];
-    if (!arc_make_inputs(c, e)) return false;
+    char defines[96], buf[160];
     arc_params params = arc_unlimited_params_of(c);
     params.exitant = exitant;
-    if (!light_planes(c, &params, sender, albedo, e) || !pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e)) return false;
-    const pass_binding bindings[] = {{3, &c->indirect, GL_WRITE_ONLY},
-                                     {4, sender, GL_READ_ONLY},
-                                     {5, albedo, GL_READ_ONLY},
-                                     {6, &c->surface, GL_READ_ONLY},
-                                     {7, &c->plane_image, GL_READ_ONLY}};
-    return pass_run(c, "arc", arc_with_planes(c, "RUNS 1\nBOUNCE 1\n", buf, sizeof buf), &params, sizeof params, bindings, 5,
-                    false, e);
+    if (sky && (!make_sunless(c, e) || !pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e))) return false;
+    if (visibility && !pass_make(c, &c->visibility, GL_R32F, 1.0f, e)) return false;
+    if (bounce && (!light_planes(c, &params, sender, albedo, e) || !pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e)))
+        return false;
+    gpu_image whole = c->environment;
+    if (sky) c->suns_apart = c->sunless->map.id != 0;
+    if (sky && c->suns_apart) c->environment = c->sunless->map;
+    pass_binding bindings[6] = {{6, &c->surface, GL_READ_ONLY}, {7, &c->plane_image, GL_READ_ONLY}};
+    int count = 2;
+    if (visibility) bindings[count++] = (pass_binding){2, &c->visibility, GL_WRITE_ONLY};
+    if (sky) bindings[count++] = (pass_binding){3, &c->radiance, GL_WRITE_ONLY};
+    if (bounce) bindings[count++] = (pass_binding){4, sender, GL_READ_ONLY};
+    if (bounce && !exitant) bindings[count++] = (pass_binding){5, albedo, GL_READ_ONLY};
+    if (bounce) bindings[count++] = (pass_binding){exitant ? 5 : 3, &c->indirect, GL_WRITE_ONLY};
+    snprintf(defines, sizeof defines, "RUNS 1\n%s%s%s%s", sky ? "LIGHT 1\n" : "", visibility ? "VISIBILITY 1\n" : "",
+             bounce ? "BOUNCE 1\n" : "", bounce && exitant ? "EXITANT 1\n" : "");
+    const char *name = sky && bounce ? "arc light+bounce" : sky ? "arc light" : "arc bounce";
+    bool ok = pass_run(c, name, arc_with_planes(c, defines, buf, sizeof buf), &params, sizeof params, bindings, count, false, e);
+    c->environment = whole;
+    return ok;
+}
+
+bool pass_gtao(pass_context *c, error *e) { return run_occlusion(c, "HORIZON 1\n", e); }
+bool pass_bitmask(pass_context *c, error *e) { return run_occlusion(c, "BITMASK 1\n", e); }
+
+bool pass_arc(pass_context *c, error *e)
+{
+    if (!arc_make_inputs(c, e) || !run_occlusion(c, "RUNS 1\n", e)) return false;
+    return !(c->want_radiance || c->want_visibility) || run_light(c, true, c->want_indirect, e);
+}
+
+bool pass_arc_bounce(pass_context *c, error *e)
+{
+    return c->indirect.id || (arc_make_inputs(c, e) && run_light(c, false, true, e));
 }

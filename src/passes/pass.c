@@ -174,7 +174,7 @@ bool pass_run(pass_context *c, const char *name, const char *defines, const void
 {
     double wall = now(CLOCK_MONOTONIC), cpu = now(CLOCK_PROCESS_CPUTIME_ID);
     char file[64];
-    snprintf(file, sizeof file, "%s.comp", name);
+    snprintf(file, sizeof file, "%.*s.comp", (int)strcspn(name, " "), name);
     if (!set_up(c, file, defines, params, params_size, bindings, binding_count, e)) return false;
     gpu_dispatch_tiles(&c->tiles, everywhere);
     return note_time(c, name, wall, cpu, everywhere, e);

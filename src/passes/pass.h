@@ -76,7 +76,7 @@ typedef struct pass_context {
     pass_settings set;
     bool want_diffuse; // the composite pass also writes the diffuse layer
     bool want_bent;
-    bool want_indirect;                  // the method's own loop makes the bounce too
+    bool want_indirect;                  // the method's own loop makes the bounce too, if it can
     bool want_radiance, want_visibility; // what the method's own loop should make besides occlusion
 
     // Inputs on the GPU; id 0 where the plan does not need them.
@@ -124,7 +124,8 @@ typedef struct pass_binding {
 // The program of a shader file for the frame's camera, with further defines (may be NULL).
 GLuint pass_program(pass_context *c, const char *file, const char *defines, error *e);
 
-// Runs shader `name` over the tiles with the given parameter block (may be NULL) and images.
+// Runs shader `name` over the tiles with the given parameter block (may be NULL) and images. What follows a space in `name` only
+// tells one use of the shader from another in the report.
 bool pass_run(pass_context *c, const char *name, const char *defines, const void *params, size_t params_size,
               const pass_binding *bindings, int binding_count, bool everywhere, error *e);
 
@@ -146,7 +147,7 @@ bool pass_raytrace(pass_context *c, error *e); // -> occlusion, radiance, visibi
 bool pass_raytrace_bounce(pass_context *c, error *e);
 bool pass_alchemy(pass_context *c, error *e);     // -> occlusion (1 - S, before its bounds)
 bool pass_arc(pass_context *c, error *e);         // -> occlusion, bent, radiance and visibility (suns_apart)
-bool pass_arc_bounce(pass_context *c, error *e);  // radiance or beauty, albedo -> indirect
+bool pass_arc_bounce(pass_context *c, error *e);  // radiance or beauty, albedo -> indirect, if the light's march has not made it
 bool pass_suns(pass_context *c, error *e);        // radiance, visibility: in place, if their suns are apart
 bool pass_gtao(pass_context *c, error *e);        // -> occlusion, bent
 bool pass_bitmask(pass_context *c, error *e);     // -> occlusion, bent

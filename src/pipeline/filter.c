@@ -18,6 +18,14 @@ static bool (*bounce_of(const plan *p))(pass_context *, error *)
     return name && strcmp(name, "arc") == 0 ? pass_arc_bounce : pass_ssdo_bounce;
 }
 
+// Whether the method's own loop makes the bounce: arc's, if it is not its own light that bounces.
+static bool bounces_itself(const pass_context *c, const plan *p)
+{
+    if (!p->bounce) return false;
+    return bounce_of(p) == pass_raytrace_bounce ||
+           (bounce_of(p) == pass_arc_bounce && p->method->run == pass_arc && !c->set.relight);
+}
+
 // What the method itself makes, filtered: linear quantities all.
 static bool run_method(pass_context *c, const plan *p, error *e)
 {
@@ -73,7 +81,8 @@ static bool run_half(pass_context *c, const plan *p, error *e)
     small.want_bent = c->want_bent;
     ok = run_method(&small, p, e);
     // All layers go up together, unless the bounce needs what is done to them at either size.
-    bool early = p->bounce && (p->look || p->irradiance || (c->proxies && c->proxies->count > 0) || small.suns_apart);
+    bool early =
+        p->bounce && c->set.relight && (p->look || p->irradiance || (c->proxies && c->proxies->count > 0) || small.suns_apart);
     ok = ok && (!early || pass_upsample(c, &small, e));
     if (ok && p->bounce) ok = (!early || (pass_suns(&small, e) && finish_light(&small, p, e))) && run_bounce(&small, p, e);
     ok = ok && (early ? pass_upsample_indirect(c, &small, e) : pass_upsample(c, &small, e));
@@ -125,7 +134,7 @@ bool filter_frame(job *j, frame_result *r, error *e)
     c.environment = j->env_image;
     c.sunless = &j->sunless;
     c.trace = &j->trace;
-    c.want_indirect = r->plan.bounce && bounce_of(&r->plan) == pass_raytrace_bounce;
+    c.want_indirect = bounces_itself(&c, &r->plan);
     c.proxies = &r->proxies;
     c.threads = j->threads;
     c.want_radiance = r->plan.want_radiance;

@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -188,6 +189,59 @@ static void bounce_is_bounded(void **state)
     rig_close(&r);
 }
 
+static int runs_of(const frame_result *r, const char *name)
+{
+    int n = 0;
+    for (int i = 0; i < r->timing_count; i++) n += strcmp(r->timings[i].name, name) == 0;
+    return n;
+}
+
+// A picture's light bounces in the march of the sky's light, at both sizes of the frame, to the bit as in a march of its own; and
+// what nobody asked for is not marched for.
+static void one_march_makes_the_layers_of_two(void **state)
+{
+    (void)state;
+    enum { W = 96, H = 72 };
+    enum { SKY = 1 << LAYER_RADIANCE, BOUNCE = 1 << LAYER_INDIRECT, VISIBILITY = 1 << LAYER_VISIBILITY };
+    static float beauty[4 * W * H];
+    rig lit, dark; // without light there is no march that the bounce could join
+    error e = {0};
+    must(rig_open(&lit, &(env_options){.up_z = true, .scale = 1.0}, &e), &e);
+    must(rig_open(&dark, NULL, &e), &e);
+    scene s;
+    scene_clutter(&s);
+    view v = view_perspective(W, H, 50.0, 1.0);
+    view_scene(&v, &s);
+    gbuffer gb;
+    must(scene_gbuffer(&s, &v, &gb, &e), &e);
+    for (int i = 0; i < 4 * W * H; i++) beauty[i] = (float)(i * 7919 % 1000) * 0.002f;
+    gb.beauty = beauty;
+    for (int half = 0; half < 2; half++) {
+        frame_result both, sky, bounce;
+        pass_settings set = rig_settings(method_find("arc"), s.radius);
+        set.planes = true, set.relight = false, set.half = half, set.blur = 3;
+        lit.options.bounce = dark.options.bounce = "arc";
+        must(rig_run(&lit, &gb, method_find("arc"), &set, SKY | BOUNCE | VISIBILITY, &both, &e), &e);
+        must(rig_run(&lit, &gb, method_find("arc"), &set, SKY | VISIBILITY, &sky, &e), &e);
+        must(rig_run(&dark, &gb, method_find("arc"), &set, BOUNCE, &bounce, &e), &e);
+        assert_memory_equal(both.layers[LAYER_RADIANCE], sky.layers[LAYER_RADIANCE], 3 * W * H * sizeof(float));
+        assert_memory_equal(both.layers[LAYER_VISIBILITY], sky.layers[LAYER_VISIBILITY], W * H * sizeof(float));
+        assert_memory_equal(both.layers[LAYER_INDIRECT], bounce.layers[LAYER_INDIRECT], 3 * W * H * sizeof(float));
+        assert_int_equal(runs_of(&both, "arc light+bounce"), 1);
+        assert_int_equal(runs_of(&both, "arc light") + runs_of(&both, "arc bounce"), 0);
+        assert_int_equal(runs_of(&sky, "arc light"), 1);
+        assert_int_equal(runs_of(&bounce, "arc bounce"), 1);
+        assert_int_equal(runs_of(&bounce, "arc light") + runs_of(&bounce, "arc light+bounce"), 0);
+        rig_free_result(&both);
+        rig_free_result(&sky);
+        rig_free_result(&bounce);
+    }
+    gb.beauty = NULL;
+    gbuffer_free(&gb);
+    rig_close(&lit);
+    rig_close(&dark);
+}
+
 // test_arc [FILTER]
 int main(int argc, char **argv)
 {
@@ -197,6 +251,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(planes_never_touch_an_empty_plane),
         cmocka_unit_test(a_plane_goes_on_beyond_the_frame),
         cmocka_unit_test(bounce_is_bounded),
+        cmocka_unit_test(one_march_makes_the_layers_of_two),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests_name("arc", tests, NULL, NULL);
