@@ -1,8 +1,12 @@
 // Light through the open sectors of a slice.
 
-// The slice in CELLS pieces of equal angle; each looks the environment up once, at a level of its own solid angle, and weighs it by
-// its share of open sectors. `all` is what arrives with nothing in the way.
-const int CELLS = 24;
+// The slice in CELLS pieces of equal angle; each looks the environment up once and weighs it by its share of open sectors. `all` is
+// what arrives with nothing in the way. The level is that of a FOOTPRINT of the piece's solid angle: what lies beside the slice comes
+// in by the turn of the slices from pixel to pixel, and a level that covers the whole piece brings light from beyond what blocks it.
+// (Error over five samples and their unseen variants at 64 samples: 24 pieces looked up whole .102 and .100, by this eighth .097 and
+// .095; 24, 12 and 6 pieces at that footprint differ by .0005.)
+const int CELLS = 8;
+const float FOOTPRINT = 0.125;
 
 struct Light {
     vec3 open;
@@ -21,7 +25,7 @@ void add_sky(inout Light light, Side s, vec3 V, vec3 across, float n, float weig
         uvec2 cell = sectors(c, next, jitter);
         float share = sector_share(cell), open = sector_share(cell & ~blocked);
         vec3 direction = to_map(middle.x * V + middle.y * across);
-        float solid_angle = wedge * max(abs(middle.y) * width, 0.25 * width * width);
+        float solid_angle = FOOTPRINT * wedge * max(abs(middle.y) * width, 0.25 * width * width);
         vec3 L = radiance_from(direction, params.level < 0.0 ? map_level(direction, solid_angle) : params.level);
         light.open += weight * open * L;
         light.open_luminance += weight * open * dot(L, LUMINANCE);
