@@ -29,7 +29,8 @@ void main() {
         float depth = depth_at(q);
         if (depth == 0.0) continue;
         float off = abs(dot(equation.xyz, position_of(q, depth)) - equation.w);
-        if (off > room * (is_orthographic() ? 1.0 : depth) || dot(equation.xyz, normal_at(q)) < 0.99) continue;
+        float least = room < 0.0 ? 0.8 : 0.99;
+        if (off > abs(room) * (is_orthographic() ? 1.0 : depth) || dot(equation.xyz, normal_at(q)) < least) continue;
         sum += sent_by(q);
         count += 1.0;
     }

@@ -40,7 +40,7 @@ bool behind_plane(vec3 P, vec3 S, Line line) {
         bool towards = height * rate > 0.0 && abs(height) > ROOM * P.z;
         vec3 X = P + (towards ? height / rate : 0.0) * S;
         vec2 here = vec2(dot(u.xyz, X) - u.w, dot(v.xyz, X) - v.w);
-        hidden = hidden || (towards && stands(i, X, here, allows(border, equation)));
+        hidden = hidden || (towards && stands(i, X, here, allows(border, equation, ROOM), ROOM));
     }
     return hidden;
 }

@@ -91,7 +91,7 @@ void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at,
 }
 
 // Beyond the frame the last run goes on along its own tangent.
-void go_on(inout Run run, Side s, Walk k, float at) {
+void go_on(inout Sectors slots, inout Run run, Side s, Walk k, float at) {
     ivec2 q = ivec2(k.line.origin + at * k.line.direction);
     vec3 n = normal_at(q);
     bool on_plane = (imageLoad(surface_image, q).y >> 31u) == 1u;
@@ -113,6 +113,10 @@ void go_on(inout Run run, Side s, Walk k, float at) {
     run.rim_inverse = rises ? inversesqrt(dot(from_eye, from_eye)) : run.rim_inverse;
     run.low = counts ? min(run.low, c) : run.low;
     run.high = counts ? max(run.high, c) : run.high;
+#ifdef BOUNCE
+    // Nothing says that it ends or is hidden there, so it sends as much as what is seen of it; planes often do end.
+    block(slots, counts && !on_plane ? sectors(run.low, run.high, k.jitter) : uvec2(0u), run.light);
+#endif
 }
 
 void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
@@ -125,6 +129,6 @@ void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, float step_ji
         visit(slots, run, s, k, P, at, before);
         before = at;
     }
-    go_on(run, s, k, before);
+    go_on(slots, run, s, k, before);
     finish(slots, s, k, run, false, true);
 }

@@ -9,8 +9,9 @@ layout(rgba32f, binding = 7) readonly uniform image2D planes_image;
 const int CHORDS = 6; // directions tested of the arc that a plane could block
 const float BELIEVED_PLANE = 1.5; // beyond the frame a plane is believed up to here, in half widths of its support
 const float ROOM = 0.004; // of the depth: as far as a plane may lie off its own surface, and a little more
+const float UNEVEN_ROOM = 0.1; // the same of uneven ground
 
-// True if the recorded surface at a pixel lies in front of depth z, or (with a negative sign of ROOM) at it.
+// True if the recorded surface at a pixel lies in front of depth z, or (with a negative room) at it.
 bool hidden(float recorded, float z, float room) { return recorded != 0.0 && z > recorded * (1.0 + room); }
 
 // The pixel where a line leaves the frame.
@@ -22,14 +23,14 @@ Border border_of(Line line) {
 }
 
 // Whether a plane may go on beyond the frame there.
-bool allows(Border b, vec4 equation) {
+bool allows(Border b, vec4 equation, float room) {
     float across = dot(equation.xy, b.ray);
     float z = is_orthographic() ? (equation.w - across) / equation.z : equation.w / (across + equation.z);
-    return hidden(b.recorded, z > 0.0 ? z : 1e30, -ROOM);
+    return hidden(b.recorded, z > 0.0 ? z : 1e30, -room);
 }
 
 // Whether the plane's point X counts; `here`: its place on the support, -1 .. 1.
-bool stands(int plane, vec3 X, vec2 here, bool beyond_frame) {
+bool stands(int plane, vec3 X, vec2 here, bool beyond_frame, float room) {
     vec2 screen = screen_of(X);
     // Compared before they become integers, which hold no screen coordinate of a point near the eye.
     bool inside = X.z > 0.0 && all(greaterThanEqual(screen, vec2(0.0))) && all(lessThan(screen, vec2(frame_size)));
@@ -37,7 +38,7 @@ bool stands(int plane, vec3 X, vec2 here, bool beyond_frame) {
     vec4 rows = imageLoad(planes_image, ivec2(PLANE_CELLS + (cell.y >> 2), plane));
     uint row = uint((cell.y & 2) == 0 ? ((cell.y & 1) == 0 ? rows.x : rows.y) : ((cell.y & 1) == 0 ? rows.z : rows.w));
     bool supported = max(abs(here.x), abs(here.y)) <= 1.0 && ((row >> cell.x) & 1u) == 1u;
-    bool behind = hidden(imageLoad(depth_image, q).r, X.z, ROOM);
+    bool behind = hidden(imageLoad(depth_image, q).r, X.z, room);
     return inside ? supported && behind : beyond_frame && max(abs(here.x), abs(here.y)) <= BELIEVED_PLANE;
 }
 
@@ -46,6 +47,8 @@ void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, 
     for (int i = 0; i < params.planes; i++) {
         vec4 equation = imageLoad(planes_image, ivec2(PLANE_EQUATION, i));
         vec4 u = imageLoad(planes_image, ivec2(PLANE_U, i)), v = imageLoad(planes_image, ivec2(PLANE_V, i));
+        bool uneven = imageLoad(planes_image, ivec2(PLANE_LIGHT, i)).w < 0.0;
+        float room = uneven ? UNEVEN_ROOM : ROOM;
         // Distance to the plane along direction t: height / (normal . (cos t, sin t)), least at t0.
         float h = equation.w - dot(equation.xyz, P), height = abs(h);
         vec2 normal = vec2(dot(equation.xyz, V), dot(equation.xyz, across)) * (h < 0.0 ? -1.0 : 1.0);
@@ -59,8 +62,8 @@ void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, 
         t0 -= t0 - n > PI ? 2.0 * PI : t0 - n < -PI ? -2.0 * PI : 0.0;
         float from = max(t0 - half_angle, n - 0.5 * PI), to = min(t0 + half_angle, n + 0.5 * PI);
         float width = (to - from) / float(CHORDS);
-        bool relevant = width > 0.0 && height > ROOM * P.z;
-        bool goes_right = allows(right, equation), goes_left = allows(left, equation);
+        bool relevant = width > 0.0 && height > ROOM * P.z && !(uneven && h > 0.0);
+        bool goes_right = allows(right, equation, room), goes_left = allows(left, equation, room);
 #ifdef BOUNCE
         vec3 sent = h < 0.0 ? imageLoad(planes_image, ivec2(PLANE_LIGHT, i)).rgb : vec3(0.0); // from the side that the camera sees
 #else
@@ -74,7 +77,7 @@ void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, 
             float next = share_at(s, from + float(j + 1) * width, edge);
             vec3 X = P + height / dot(normal, d) * (d.x * V + d.y * across);
             vec2 here = vec2(dot(u.xyz, X) - u.w, dot(v.xyz, X) - v.w);
-            bool blocks = relevant && stands(i, X, here, d.y > 0.0 ? goes_right : goes_left);
+            bool blocks = relevant && stands(i, X, here, d.y > 0.0 ? goes_right : goes_left, room);
             block(slots, blocks ? sectors(c, next, jitter) : uvec2(0u), sent);
             c = next;
         }

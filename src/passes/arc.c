@@ -43,6 +43,8 @@ arc_params arc_unlimited_params_of(const pass_context *c)
 {
     arc_params p = arc_params_of(c);
     p.radius = HUGE_LENGTH;
+    // Uneven ground stands in for light only: what it hides within the radius, runs know better.
+    p.planes = c->planes.count + c->planes.uneven;
     p.tolerance = TOLERANCE;
     return p;
 }
@@ -54,11 +56,11 @@ enum { EQUATION, AXIS_U, AXIS_V, LIGHT, CELLS, COLUMNS = CELLS + PLANE_CELLS / 4
 
 void arc_put(float to[4], vec3 a, double w) { to[0] = (float)a.x, to[1] = (float)a.y, to[2] = (float)a.z, to[3] = (float)w; }
 
-static void put_plane(float row[COLUMNS][4], const plane *p, double room)
+static void put_plane(float row[COLUMNS][4], const plane *p, bool uneven)
 {
     arc_put(row[EQUATION], p->normal, p->offset);
     for (int i = 0; i < 2; i++) arc_put(row[AXIS_U + i], v3_scale(p->axis[i], 1.0 / p->half[i]), p->centre[i] / p->half[i]);
-    arc_put(row[LIGHT], v3(0, 0, 0), room);
+    arc_put(row[LIGHT], v3(0, 0, 0), uneven ? -p->room : p->room);
     for (int y = 0; y < PLANE_CELLS; y++) row[CELLS + y / 4][y % 4] = (float)p->cells[y];
 }
 
@@ -67,12 +69,13 @@ static bool make_planes(pass_context *c, error *e)
 {
     if (!c->set.planes || c->plane_image.id) return true;
     if (!c->planes.found && !planes_find(c->gb, &c->planes, e)) return false;
-    float rows[PLANES_MAX][COLUMNS][4] = {0};
-    for (int i = 0; i < c->planes.count; i++) put_plane(rows[i], &c->planes.planes[i], c->planes.room);
-    for (int i = 0; i < c->planes.count; i++)
-        log_info(c->log, "plane %d: %.1f %% of the surfaces, %.3g x %.3g scene units", i + 1, 100.0 * c->planes.planes[i].share,
+    float rows[PLANES_MAX + 1][COLUMNS][4] = {0};
+    for (int i = 0; i < c->planes.count + c->planes.uneven; i++) put_plane(rows[i], &c->planes.planes[i], i == c->planes.count);
+    for (int i = 0; i < c->planes.count + c->planes.uneven; i++)
+        log_info(c->log, "%s %d: %.1f %% of the surfaces, %.3g x %.3g scene units",
+                 i == c->planes.count ? "uneven ground, as plane" : "plane", i + 1, 100.0 * c->planes.planes[i].share,
                  2.0 * c->planes.planes[i].half[0], 2.0 * c->planes.planes[i].half[1]);
-    if (!gpu_image_make(c->g, &c->plane_image, GL_RGBA32F, COLUMNS, PLANES_MAX, 1, e)) return false;
+    if (!gpu_image_make(c->g, &c->plane_image, GL_RGBA32F, COLUMNS, PLANES_MAX + 1, 1, e)) return false;
     gpu_image_upload(&c->plane_image, 0, rows[0][0]);
     return true;
 }
@@ -102,7 +105,7 @@ static bool make_sunless(pass_context *c, error *e)
 
 const char *arc_with_planes(const pass_context *c, const char *defines, char *buf, size_t size)
 {
-    snprintf(buf, size, "%s%s", defines, c->planes.count ? "PLANES 1\n" : "");
+    snprintf(buf, size, "%s%s", defines, c->planes.count + c->planes.uneven ? "PLANES 1\n" : "");
     return buf;
 }
 
@@ -135,7 +138,7 @@ static bool run_occlusion(pass_context *c, const char *defines, error *e)
 // What the planes send: one work group that reads the whole frame's grid.
 static bool light_planes(pass_context *c, const arc_params *params, const gpu_image *sender, const gpu_image *albedo, error *e)
 {
-    if (c->planes.count == 0) return true;
+    if (c->planes.count + c->planes.uneven == 0) return true;
     GLuint program = pass_program(c, "plane_light.comp", NULL, e);
     if (!program) return false;
     glUseProgram(program);

@@ -8,20 +8,23 @@
 
 enum { SAMPLES = 4096, HYPOTHESES = 64, SCORED = 1024, REFINEMENTS = 2, TURNS = 18 };
 
-static const double DISTANCE = 0.002;   // of the depth
-static const double COSINE = 0.9902681; // 8 degrees
-static const double SMALLEST = 0.02;    // share of the surfaces
+// Of what lies on a plane, and on uneven ground: distance from it, share of the depth; cosine of the angle between the normals (8
+// and 37 degrees); and how many there must be, share of the surfaces.
+static const double DISTANCE = 0.002, UNEVEN_DISTANCE = 0.05;
+static const double COSINE = 0.9902681, UNEVEN_COSINE = 0.8;
+static const double SMALLEST = 0.02, UNEVEN_SMALLEST = 0.2;
 static const double CONTRADICTED = 3.0; // samples seen through a plane over samples on it: more refuse it
 
 typedef struct surface {
     vec3 p, n;
-    double room; // how far off a plane it may lie
+    double size; // that distances from a plane are measured in: its depth, with an orthographic camera the frame's extent
 } surface;
 
 typedef struct finder {
     surface *s; // those that no plane has taken yet come first
     int count, total;
     bool orthographic;
+    double distance, cosine; // of what lies on a plane
 } finder;
 
 static vec3 normal_of(const gbuffer *gb, size_t i)
@@ -33,7 +36,6 @@ static vec3 normal_of(const gbuffer *gb, size_t i)
 // SAMPLES surfaces or up to twice as many, on a square grid over the whole frame.
 static void take_samples(const gbuffer *gb, finder *f)
 {
-    double room = DISTANCE * (gb->camera.kind == CAMERA_ORTHOGRAPHIC ? gb->extent : 0.0);
     int step = (int)sqrt((double)gb->width * gb->height / SAMPLES);
     if (step < 1) step = 1;
     while ((gb->width / step + 1) * (gb->height / step + 1) > 2 * SAMPLES) step++;
@@ -42,14 +44,14 @@ static void take_samples(const gbuffer *gb, finder *f)
             size_t i = (size_t)y * (size_t)gb->width + (size_t)x;
             if (gb->depth[i] <= 0.0f) continue;
             double z = (double)gb->depth[i];
-            f->s[f->count++] = (surface){gbuffer_position(gb, x, y), normal_of(gb, i), room > 0.0 ? room : DISTANCE * z};
+            f->s[f->count++] = (surface){gbuffer_position(gb, x, y), normal_of(gb, i), f->orthographic ? gb->extent : z};
         }
     f->total = f->count;
 }
 
-static bool holds(const plane *p, const surface *s)
+static bool holds(const finder *f, const plane *p, const surface *s)
 {
-    return fabs(v3_dot(p->normal, s->p) - p->offset) <= s->room && v3_dot(p->normal, s->n) >= COSINE;
+    return fabs(v3_dot(p->normal, s->p) - p->offset) <= f->distance * s->size && v3_dot(p->normal, s->n) >= f->cosine;
 }
 
 // A different sample for every hypothesis, spread over the remaining ones.
@@ -63,7 +65,7 @@ static plane best_hypothesis(const finder *f)
         const surface *s = &f->s[pick(h, f->count)];
         plane p = {.normal = s->n, .offset = v3_dot(s->n, s->p)};
         int n = 0;
-        for (int i = h % stride; i < f->count; i += stride) n += holds(&p, &f->s[i]);
+        for (int i = h % stride; i < f->count; i += stride) n += holds(f, &p, &f->s[i]);
         if (n > most) most = n, best = p;
     }
     return best;
@@ -102,12 +104,12 @@ static void refine(const finder *f, plane *p)
     vec3 mean = v3(0, 0, 0);
     int n = 0;
     for (int i = 0; i < f->count; i++)
-        if (holds(p, &f->s[i])) mean = v3_add(mean, f->s[i].p), n++;
+        if (holds(f, p, &f->s[i])) mean = v3_add(mean, f->s[i].p), n++;
     if (n < 3) return;
     mean = v3_scale(mean, 1.0 / n);
     double a[3][3] = {{0}};
     for (int i = 0; i < f->count; i++) {
-        if (!holds(p, &f->s[i])) continue;
+        if (!holds(f, p, &f->s[i])) continue;
         vec3 d = v3_sub(f->s[i].p, mean);
         const double k[3] = {d.x, d.y, d.z};
         for (int r = 0; r < 3; r++)
@@ -115,7 +117,7 @@ static void refine(const finder *f, plane *p)
     }
     vec3 normal = smallest_axis(a);
     if (v3_dot(normal, p->normal) < 0.0) normal = v3_scale(normal, -1.0);
-    if (v3_dot(normal, p->normal) < COSINE) return; // samples on a line say nothing
+    if (v3_dot(normal, p->normal) < f->cosine) return; // samples on a line say nothing
     p->normal = normal;
     p->offset = v3_dot(normal, mean);
 }
@@ -129,7 +131,7 @@ static void support(const finder *f, plane *p)
         vec3 axis[2] = {v3_add(v3_scale(u, cos(angle)), v3_scale(v, sin(angle))),
                         v3_sub(v3_scale(v, cos(angle)), v3_scale(u, sin(angle)))};
         for (int i = 0; i < f->count; i++)
-            for (int k = 0; k < 2 && holds(p, &f->s[i]); k++) {
+            for (int k = 0; k < 2 && holds(f, p, &f->s[i]); k++) {
                 double x = v3_dot(axis[k], f->s[i].p);
                 low[k] = fmin(low[k], x), high[k] = fmax(high[k], x);
             }
@@ -148,7 +150,7 @@ static int take(finder *f, const plane *p)
 {
     int kept = 0, before = f->count;
     for (int i = 0; i < before; i++) {
-        if (holds(p, &f->s[i])) continue;
+        if (holds(f, p, &f->s[i])) continue;
         surface s = f->s[i];
         f->s[i] = f->s[kept];
         f->s[kept++] = s;
@@ -179,8 +181,8 @@ static int fill_cells(const finder *f, plane *p)
     for (int i = 0; i < f->total; i++) {
         const surface *s = &f->s[i];
         vec3 hit;
-        bool on = holds(p, s);
-        if (!meets(f, p, s, &hit) || (!on && hit.z > s->p.z * (1.0 - 2.0 * DISTANCE))) continue;
+        bool on = holds(f, p, s);
+        if (!meets(f, p, s, &hit) || (!on && hit.z > s->p.z * (1.0 - 2.0 * f->distance))) continue;
         int x = cell_of(p, 0, hit), y = cell_of(p, 1, hit);
         if (x < 0 || y < 0) continue;
         balance[y][x] += on ? 1 : -1;
@@ -191,27 +193,43 @@ static int fill_cells(const finder *f, plane *p)
     return through;
 }
 
+// The next plane among the samples that none has taken. Returns how many it takes; 0: too few.
+static int find_plane(finder *f, double smallest, plane *p)
+{
+    if (f->count <= smallest * f->total || f->count < 8) return 0;
+    *p = best_hypothesis(f);
+    for (int i = 0; i < REFINEMENTS; i++) refine(f, p);
+    support(f, p);
+    int n = take(f, p);
+    p->room = f->distance;
+    p->share = (double)n / f->total;
+    return n < smallest * f->total ? 0 : n;
+}
+
 bool planes_find(const gbuffer *gb, plane_set *out, error *e)
 {
     *out = (plane_set){0};
-    finder f = {.orthographic = gb->camera.kind == CAMERA_ORTHOGRAPHIC, .s = mem_zero(2 * SAMPLES, sizeof *f.s, e)};
+    finder f = {.orthographic = gb->camera.kind == CAMERA_ORTHOGRAPHIC,
+                .distance = DISTANCE,
+                .cosine = COSINE,
+                .s = mem_zero(2 * SAMPLES, sizeof *f.s, e)};
     if (!f.s) return false;
     take_samples(gb, &f);
-    for (int tried = 0; tried < 2 * PLANES_MAX && out->count < PLANES_MAX && f.count > SMALLEST * f.total && f.count >= 8;
-         tried++) {
-        plane p = best_hypothesis(&f);
-        for (int i = 0; i < REFINEMENTS; i++) refine(&f, &p);
-        support(&f, &p);
-        int n = take(&f, &p);
-        if (n < SMALLEST * f.total || n == 0) break;
-        int through = fill_cells(&f, &p);
-        if (through > CONTRADICTED * n) continue;
-        p.share = (double)n / f.total;
-        out->planes[out->count++] = p;
+    plane p;
+    int n = 1;
+    for (int tried = 0; n > 0 && tried < 2 * PLANES_MAX && out->count < PLANES_MAX; tried++) {
+        n = find_plane(&f, SMALLEST, &p);
+        if (n > 0 && fill_cells(&f, &p) <= CONTRADICTED * n) out->planes[out->count++] = p;
     }
+    // What is left may be ground that no plane holds.
+    f.distance = UNEVEN_DISTANCE;
+    f.cosine = UNEVEN_COSINE;
+    n = find_plane(&f, UNEVEN_SMALLEST, &p);
+    if (n > 0 && fill_cells(&f, &p) <= CONTRADICTED * n) out->planes[out->count] = p, out->uneven = 1;
     out->samples = f.total;
     out->found = true;
-    out->room = DISTANCE * (f.orthographic ? gb->extent : 1.0);
+    if (f.orthographic)
+        for (int i = 0; i < out->count + out->uneven; i++) out->planes[i].room *= gb->extent;
     free(f.s);
     return true;
 }

@@ -18,18 +18,19 @@ typedef struct plane {
     vec3 normal, axis[2];
     double offset, centre[2], half[2];
     double share; // of the frame's surfaces
+    double room;  // how far off its plane a surface may lie: times its depth, with an orthographic camera a length
     unsigned short cells[PLANE_CELLS];
 } plane;
 
 typedef struct plane_set {
-    plane planes[PLANES_MAX];
-    int count;
-    bool found;     // looked for
-    double room;    // how far off its plane a surface may lie: times its depth, with an orthographic camera a length
-    double samples; // surface samples that were looked at
+    plane planes[PLANES_MAX + 1];
+    int count, uneven; // planes[count] is uneven ground if uneven is 1
+    bool found;        // looked for
+    double samples;    // surface samples that were looked at
 } plane_set;
 
-// Largest first, each holding at least 2 % of the surfaces.
+// Largest first, each holding at least 2 % of the surfaces. Of what they leave, uneven ground: what lies within 5 % of its depth
+// of one plane and within 37 degrees of its normal, if that is a fifth of the surfaces.
 bool planes_find(const gbuffer *gb, plane_set *out, error *e);
 
 #endif

@@ -67,6 +67,7 @@ bool pass_suns(pass_context *c, error *e)
     if (!c->suns_apart) return true;
     if (!arc_make_inputs(c, e)) return false;
     arc_params params = arc_unlimited_params_of(c);
+    params.planes = c->planes.count;
     params.kappa *= SUN_KAPPA;
     params.steps = c->set.samples < 16 ? 16 : c->set.samples > 128 ? 128 : c->set.samples;
     params.inverse_steps = 1.0f / (float)params.steps;

@@ -97,6 +97,41 @@ static void planes_are_found_where_they_are(void **state)
     gbuffer_free(&gb);
 }
 
+// A plane with bumps of a share of the depth and swaying normals.
+static plane_set uneven(double bumps, double sway)
+{
+    scene s = {0};
+    scene_tilted_plane(&s, 20.0, 10.0);
+    view v = view_perspective(200, 150, 40.0, 1.0);
+    gbuffer gb;
+    error e = {0};
+    plane_set found;
+    must(scene_gbuffer(&s, &v, &gb, &e), &e);
+    for (int i = 0; i < gb.width * gb.height; i++) {
+        double x = 0.21 * (i % gb.width), y = 0.17 * (i / gb.width);
+        float *n = gb.normal + 4 * i;
+        vec3 m = v3_normalize(v3((double)n[0] + sway * cos(x), (double)n[1] + sway * sin(y), (double)n[2]));
+        n[0] = (float)m.x, n[1] = (float)m.y, n[2] = (float)m.z;
+        gb.depth[i] *= (float)(1.0 + bumps * (2.0 * fmod(x + 0.7 * y, 1.0) - 1.0));
+    }
+    must(planes_find(&gb, &found, &e), &e);
+    gbuffer_free(&gb);
+    return found;
+}
+
+static void uneven_ground_is_told_from_planes(void **state)
+{
+    (void)state;
+    plane_set flat = uneven(0.0, 0.0), bumpy = uneven(0.03, 0.25), rugged = uneven(0.5, 0.25);
+    assert_int_equal(flat.count, 1);
+    assert_int_equal(flat.uneven, 0);
+    assert_int_equal(bumpy.uneven, 1);
+    plane ground = bumpy.planes[bumpy.count];
+    assert_true(v3_dot(ground.normal, flat.planes[0].normal) > cos(3.0 * M_PI / 180.0));
+    assert_true(fabs(ground.offset / flat.planes[0].offset - 1.0) < 0.02);
+    assert_int_equal(rugged.uneven, 0);
+}
+
 // A box on the ground, the camera above it: from the far side of the ground nothing of the box's back is seen, and nothing but
 // the ground is a large plane. With a wall that the box hides in part, the wall's plane must darken what it may darken only.
 static void planes_never_touch_an_empty_plane(void **state)
@@ -246,11 +281,9 @@ static void one_march_makes_the_layers_of_two(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(arc_agrees_with_closed_forms),
-        cmocka_unit_test(planes_are_found_where_they_are),
-        cmocka_unit_test(planes_never_touch_an_empty_plane),
-        cmocka_unit_test(a_plane_goes_on_beyond_the_frame),
-        cmocka_unit_test(bounce_is_bounded),
+        cmocka_unit_test(arc_agrees_with_closed_forms),      cmocka_unit_test(planes_are_found_where_they_are),
+        cmocka_unit_test(uneven_ground_is_told_from_planes), cmocka_unit_test(planes_never_touch_an_empty_plane),
+        cmocka_unit_test(a_plane_goes_on_beyond_the_frame),  cmocka_unit_test(bounce_is_bounded),
         cmocka_unit_test(one_march_makes_the_layers_of_two),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
