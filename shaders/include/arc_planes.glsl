@@ -62,7 +62,8 @@ void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, 
         t0 -= t0 - n > PI ? 2.0 * PI : t0 - n < -PI ? -2.0 * PI : 0.0;
         float from = max(t0 - half_angle, n - 0.5 * PI), to = min(t0 + half_angle, n + 0.5 * PI);
         float width = (to - from) / float(CHORDS);
-        bool relevant = width > 0.0 && height > ROOM * P.z && !(uneven && h > 0.0);
+        // A rasteriser on the CPU saves turns of a loop, not branches.
+        int chords = width > 0.0 && height > ROOM * P.z && !(uneven && h > 0.0) ? CHORDS : 0;
         bool goes_right = allows(right, equation, room), goes_left = allows(left, equation, room);
 #ifdef BOUNCE
         vec3 sent = h < 0.0 ? imageLoad(planes_image, ivec2(PLANE_LIGHT, i)).rgb : vec3(0.0); // from the side that the camera sees
@@ -71,13 +72,13 @@ void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, 
 #endif
         vec2 edge = vec2(cos(from), sin(from)), turn = vec2(cos(width), sin(width)), part = vec2(cos(place * width), sin(place * width));
         float c = share_at(s, from, edge);
-        for (int j = 0; j < CHORDS; j++) {
+        for (int j = 0; j < chords; j++) {
             vec2 d = turned(edge, part);
             edge = turned(edge, turn);
             float next = share_at(s, from + float(j + 1) * width, edge);
             vec3 X = P + height / dot(normal, d) * (d.x * V + d.y * across);
             vec2 here = vec2(dot(u.xyz, X) - u.w, dot(v.xyz, X) - v.w);
-            bool blocks = relevant && stands(i, X, here, d.y > 0.0 ? goes_right : goes_left, room);
+            bool blocks = stands(i, X, here, d.y > 0.0 ? goes_right : goes_left, room);
             block(slots, blocks ? sectors(c, next, jitter) : uvec2(0u), sent);
             c = next;
         }
