@@ -40,8 +40,8 @@ float ball_tangent(vec3 P) {
     return squared > 0.0 ? params.radius * inversesqrt(squared) : -1.0;
 }
 
-// Distance of step i in pixels: at the squares of an even spacing, and at least a pixel beyond the step before.
+// Distance of step i in pixels: a pixel beyond the step before, and of what that leaves of the line at the squares of an even spacing.
 float step_distance(int i, float jitter, float limit) {
     float u = (float(i) + jitter) * params.inverse_steps;
-    return max(limit * u * u, float(i + 1));
+    return float(i + 1) + max(0.0, limit - float(params.steps)) * u * u;
 }

@@ -12,11 +12,13 @@ vec2 pixel_hash(uvec2 v) {
     return vec2(v >> 8u) * (1.0 / 16777216.0);
 }
 
-// Three numbers per pixel: a lattice whose neighbours differ evenly (Roberts' R2 sequence), so that a small window holds a stratified
-// set of the first; and a hash.
+// Three numbers per pixel, for the angle of slices, the places of steps and those of sectors: two lattices, of which the window of a
+// small filter holds a stratified set, pairs included, and a hash. The first is Roberts' R2; the second has beside it the least
+// harmonics, of both and of their sums, that pass the filter of `blur`.
 vec3 pixel_noise(ivec2 p, int seed) {
     uvec2 u = uvec2(p) + uint(seed) * 7919u;
-    return vec3(float((u.x * 3242174889u + u.y * 2447445414u) >> 8u) * (1.0 / 16777216.0), pixel_hash(u));
+    uvec2 lattices = u.x * uvec2(3242174889u, 2844675811u) + u.y * uvec2(2447445414u, 4020201488u);
+    return vec3(vec2(lattices >> 8u) * (1.0 / 16777216.0), pixel_hash(u).y);
 }
 
 // Orthonormal tangent and bitangent of a unit vector without a fixed up vector (Duff et al. 2017, JCGT 6/1).
