@@ -24,7 +24,7 @@ static const char *SKY = "samples/sky_soft.exr";
 static void path_of(const char *name, char path[96]) { snprintf(path, 96, "/tmp/ssdo_report_%d_%s", (int)getpid(), name); }
 
 // Filters a file as the program does and returns its report.
-static json_object *report_for(const char *input, const char *layers, const char *env)
+static json_object *report_by(const char *method_name, const char *input, const char *layers, const char *env)
 {
     error e = {0};
     options o;
@@ -35,7 +35,7 @@ static json_object *report_for(const char *input, const char *layers, const char
     path_of("out.exr", output);
     path_of("report.json", path);
     options_defaults(&o);
-    o.method = "ssdo"; // has a bounce
+    o.method = method_name;
     o.layers = layers;
     o.env = env;
     o.report = path;
@@ -51,6 +51,11 @@ static json_object *report_for(const char *input, const char *layers, const char
     remove(output);
     remove(path);
     return report;
+}
+
+static json_object *report_for(const char *input, const char *layers, const char *env)
+{
+    return report_by("ssdo", input, layers, env); // has a bounce
 }
 
 // A picture of the clutter, without what the options leave out.
@@ -245,6 +250,38 @@ static void empty_tiles_are_not_dispatched(void **state)
     remove(path);
 }
 
+// arc marches for what is asked for, and once for what one march can serve.
+static void marches_are_those_needed(void **state)
+{
+    static const char *const marches[] = {"arc", "arc light", "arc bounce", "arc light+bounce"};
+    static const struct {
+        const char *layers, *env;
+        bool runs[4];
+    } cases[] = {
+        {"occlusion", NULL, {true}},
+        {"occlusion", "samples/sky_soft.exr", {true}},
+        {"radiance", "samples/sky_soft.exr", {true, true}},
+        {"indirect", NULL, {true, false, true}},
+        {"indirect", "samples/sky_soft.exr", {true, true, true}},
+        {NULL, "samples/sky_soft.exr", {true, true, true}},
+        {NULL, NULL, {true, false, false, true}}, // the beauty bounces
+    };
+    (void)state;
+    char path[96];
+    path_of("marches.exr", path);
+    write_scene((scene_exr_options){0}, path);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        json_object *r = report_by("arc", path, cases[i].layers, cases[i].env);
+        for (int k = 0; k < 4; k++)
+            if (timed(r, marches[k]) != cases[i].runs[k])
+                fail_msg("--layers %s, %s: march '%s' %s", cases[i].layers ? cases[i].layers : "(default)",
+                         cases[i].env ? cases[i].env : "no environment", marches[k],
+                         cases[i].runs[k] ? "is missing" : "runs and nobody needs it");
+        json_object_put(r);
+    }
+    remove(path);
+}
+
 static void the_rest_is_there(void **state)
 {
     static const char *stages[] = {"read", "resolve", "passes", "upload", "ssdo", "blur", "read back", "write"};
@@ -273,6 +310,7 @@ int main(void)
         cmocka_unit_test(occlusion_uploads_depth_and_normals),
         cmocka_unit_test(beauty_is_uploaded_where_it_is_seen),
         cmocka_unit_test(empty_tiles_are_not_dispatched),
+        cmocka_unit_test(marches_are_those_needed),
         cmocka_unit_test(the_rest_is_there),
     };
     return cmocka_run_group_tests_name("report", tests, NULL, NULL);
