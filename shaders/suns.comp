@@ -1,8 +1,7 @@
 #version 450 core
-// lint: | PLANES
 // Light of the environment's suns, small bright sources taken out of the map; suns_add.comp adds it to the light of the rest. Each
 // sun gets one side of a slice, marched as `arc` marches (THEORY.md 3.4), whose 64 sectors divide the sun's own disc; so a penumbra
-// has no noise.
+// has no noise. Planes do not stand in here: a plane's guess of a shadow is all or nothing, and errs more often than it helps.
 #define SUNS
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
@@ -13,9 +12,6 @@
 #include "include/arc_sectors.glsl"
 #include "include/suns.glsl"
 #include "include/arc_march.glsl"
-#ifdef PLANES
-#include "include/arc_planes.glsl"
-#endif
 
 layout(rgba32f, binding = 3) writeonly uniform image2D sun_image; // rgb light, a its share of what arrives with nothing in the way
 
@@ -27,24 +23,6 @@ float way_out(vec3 P, vec3 S, Line line) {
     vec3 X = P + max(0.0, min(times.x, min(times.y, times.z))) * S;
     return in_front(X) ? min(distance(screen_of(X), line.origin), line.border) : line.border;
 }
-
-#ifdef PLANES
-// Whether a plane hides the sun.
-bool behind_plane(vec3 P, vec3 S, Line line) {
-    Border border = border_of(line);
-    bool hidden = false;
-    for (int i = 0; i < params.planes; i++) {
-        vec4 equation = imageLoad(planes_image, ivec2(PLANE_EQUATION, i));
-        vec4 u = imageLoad(planes_image, ivec2(PLANE_U, i)), v = imageLoad(planes_image, ivec2(PLANE_V, i));
-        float height = equation.w - dot(equation.xyz, P), rate = dot(equation.xyz, S);
-        bool towards = height * rate > 0.0 && abs(height) > ROOM * P.z;
-        vec3 X = P + (towards ? height / rate : 0.0) * S;
-        vec2 here = vec2(dot(u.xyz, X) - u.w, dot(v.xyz, X) - v.w);
-        hidden = hidden || (towards && stands(i, X, here, allows(border, equation, ROOM), ROOM));
-    }
-    return hidden;
-}
-#endif
 
 void main() {
     ivec2 p = this_pixel();
@@ -71,9 +49,6 @@ void main() {
         Sectors slots = all_open();
         march(slots, side, line, P, N, noise, 0.5);
         float open = 1.0 - sector_share(slots.blocked);
-#ifdef PLANES
-        if (behind_plane(P, S, line)) open = 0.0;
-#endif
         light += open * L;
         all += L;
     }

@@ -11,6 +11,7 @@ layout(rg32ui, binding = 6) readonly uniform uimage2D surface_image; // surface.
 const float BELIEVED = 0.3;
 #ifdef SUNS
 const float BELIEVED_BENT = BELIEVED;
+const int BACKS = 4; // depths of a back that are weighed: every fourth sector's
 #else
 const float BELIEVED_BENT = 30.0;
 #endif
@@ -40,8 +41,18 @@ struct Walk {
 // Ends a run: all it blocks, as far as its samples have not done so already.
 void finish(inout Sectors slots, Side s, Walk k, Run r, bool ends, bool now) {
     float thickness = max(r.width, r.starts && ends ? params.thin : params.thickness);
+#ifdef SUNS
+    // A sharp shadow ends where the back is, which is a guess: every depth up to twice the guess is as likely, so each takes a share of
+    // the sectors.
+    uvec2 mask = uvec2(0u);
+    for (int i = 0; i < BACKS; i++) {
+        float back = share(s, r.rim + thickness * float(2 * i + 1) / float(BACKS) * away(s, r.rim, r.rim_inverse));
+        mask |= sectors(r.low, max(r.high, back), k.jitter) & (0x11111111u << uint(i));
+    }
+#else
     float back = share(s, r.rim + thickness * away(s, r.rim, r.rim_inverse));
     uvec2 mask = sectors(r.low, max(r.high, back), k.jitter);
+#endif
     block(slots, now && r.alive && r.low <= r.high ? mask : uvec2(0u), HIDDEN * r.light);
 }
 

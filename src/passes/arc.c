@@ -103,7 +103,8 @@ static bool make_sunless(pass_context *c, error *e)
 
 // ---- the passes
 
-const char *arc_with_planes(const pass_context *c, const char *defines, char *buf, size_t size)
+// `defines`, and PLANES if there are any.
+static const char *with_planes(const pass_context *c, const char *defines, char *buf, size_t size)
 {
     snprintf(buf, size, "%s%s", defines, c->planes.count + c->planes.uneven ? "PLANES 1\n" : "");
     return buf;
@@ -116,7 +117,7 @@ static bool make_surface(pass_context *c, error *e)
     char buf[128];
     const pass_binding bindings[] = {{2, &c->surface, GL_WRITE_ONLY}, {7, &c->plane_image, GL_READ_ONLY}};
     return pass_make(c, &c->surface, GL_RG32UI, 0.0f, e) &&
-           pass_run(c, "surface", arc_with_planes(c, "", buf, sizeof buf), &params, sizeof params, bindings, 2, false, e);
+           pass_run(c, "surface", with_planes(c, "", buf, sizeof buf), &params, sizeof params, bindings, 2, false, e);
 }
 
 bool arc_make_inputs(pass_context *c, error *e) { return make_planes(c, e) && make_surface(c, e); }
@@ -132,7 +133,7 @@ static bool run_occlusion(pass_context *c, const char *defines, error *e)
                                      {3, &c->bent, GL_WRITE_ONLY},
                                      {6, &c->surface, GL_READ_ONLY},
                                      {7, &c->plane_image, GL_READ_ONLY}};
-    return pass_run(c, "arc", arc_with_planes(c, with_bent, buf, sizeof buf), &params, sizeof params, bindings, 4, false, e);
+    return pass_run(c, "arc", with_planes(c, with_bent, buf, sizeof buf), &params, sizeof params, bindings, 4, false, e);
 }
 
 // What the planes send: one work group that reads the whole frame's grid.
@@ -181,7 +182,7 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
     snprintf(defines, sizeof defines, "RUNS 1\n%s%s%s%s", sky ? "LIGHT 1\n" : "", visibility ? "VISIBILITY 1\n" : "",
              bounce ? "BOUNCE 1\n" : "", bounce && exitant ? "EXITANT 1\n" : "");
     const char *name = sky && bounce ? "arc light+bounce" : sky ? "arc light" : "arc bounce";
-    bool ok = pass_run(c, name, arc_with_planes(c, defines, buf, sizeof buf), &params, sizeof params, bindings, count, false, e);
+    bool ok = pass_run(c, name, with_planes(c, defines, buf, sizeof buf), &params, sizeof params, bindings, count, false, e);
     c->environment = whole;
     return ok;
 }

@@ -24,9 +24,6 @@ arc_params arc_unlimited_params_of(const pass_context *c);
 // What all marches read, once a frame: the planes and their image, the packed surfaces.
 bool arc_make_inputs(pass_context *c, error *e);
 
-// `defines`, and PLANES if there are any.
-const char *arc_with_planes(const pass_context *c, const char *defines, char *buf, size_t size);
-
 void arc_put(float to[4], vec3 a, double w);
 
 #endif

@@ -13,8 +13,8 @@ typedef struct box_job {
 
 enum { BANDS = 64 };
 
-static const float SUN_KAPPA =
-    0.5f; // a sharp shadow shows where a back is; half as deep as wide errs least (1: .129, .5: .115, .25: .122)
+// A sharp shadow shows where a back is: on average half as deep as wide errs least (shaders/include/arc_march.glsl).
+static const float SUN_KAPPA = 0.5f;
 
 static bool bound_band(void *context, size_t band, int worker)
 {
@@ -67,17 +67,15 @@ bool pass_suns(pass_context *c, error *e)
     if (!c->suns_apart) return true;
     if (!arc_make_inputs(c, e)) return false;
     arc_params params = arc_unlimited_params_of(c);
-    params.planes = c->planes.count;
     params.kappa *= SUN_KAPPA;
     params.steps = c->set.samples < 16 ? 16 : c->set.samples > 128 ? 128 : c->set.samples;
     params.inverse_steps = 1.0f / (float)params.steps;
     put_suns(c, &params);
     gpu_image light = {0};
-    char buf[128];
-    const pass_binding march[] = {{3, &light, GL_WRITE_ONLY}, {6, &c->surface, GL_READ_ONLY}, {7, &c->plane_image, GL_READ_ONLY}};
+    const pass_binding march[] = {{3, &light, GL_WRITE_ONLY}, {6, &c->surface, GL_READ_ONLY}};
     const pass_binding add[] = {{2, &c->visibility, GL_READ_WRITE}, {3, &light, GL_READ_ONLY}, {4, &c->radiance, GL_READ_WRITE}};
     bool ok = pass_make(c, &light, GL_RGBA32F, 0.0f, e) &&
-              pass_run(c, "suns", arc_with_planes(c, "", buf, sizeof buf), &params, sizeof params, march, 3, false, e) &&
+              pass_run(c, "suns", NULL, &params, sizeof params, march, 2, false, e) &&
               pass_run(c, "suns_add", c->visibility.id ? "VISIBILITY 1\n" : NULL, &params, sizeof params, add, 3, false, e);
     gpu_image_free(&light);
     c->suns_apart = !ok;
