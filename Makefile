@@ -61,6 +61,7 @@ help:
 	@echo 'make fuzz FUZZ_SECONDS=60   random files and frame ranges, by libFuzzer'
 	@echo 'make bench    error against time of every method (bench-unseen: on scenes rendered afresh)'
 	@echo 'make bench-paper   cost of ssdo'\''s light and bounce beside the paper, of s3ho beside hemisphere'
+	@echo 'make bench-sampling   error by the sequence that slices, steps and sectors draw from, and by the spacing of steps'
 	@echo 'make bench-frame   cost of a whole frame beside copying its file (bench-frame-readme: into README.md)'
 	@echo 'make all | lint | format | install PREFIX= DESTDIR= | uninstall | clean'
 
@@ -178,6 +179,17 @@ $(BUILD)/bench-paper: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/
 # The errors of arc's budgets, for bench-frame.
 $(BUILD)/bench-curve: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/curve.o $(TESTLIB) $(BUILD)/libssdo.a
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lembree3 $(PKG_LIBS)
+# Sequences and step spacings that `arc` could draw from.
+$(BUILD)/bench-sequences: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/sequences.o $(TESTLIB) $(BUILD)/libssdo.a
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lembree3 $(PKG_LIBS)
+# The rendered samples of the folder SAMPLES, with SEEDS seeds.
+SAMPLES  ?= samples
+SEEDS    ?= 3
+.PHONY: bench-sampling
+bench-sampling: deps-bench
+	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench-sequences
+	@sh tests/bench/sequences.sh $(BUILD) $(SAMPLES) $(SEEDS) $(WORD)
+
 .PHONY: bench-paper
 bench-paper: deps-bench
 	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench-paper

@@ -76,6 +76,7 @@ typedef struct bench_row {
     bool middle, proxies;   // only the middle third of the picture; with spheres for what stands beside it
     int trace;              // raytrace: its back end
     bool once;              // timed in the first round only
+    int seed;               // of the noise
     bool standard;          // the method's own defaults: a row of the short table
 } bench_row;
 

@@ -23,6 +23,7 @@ pass_settings bench_settings(const bench_row *row, const bench_scene *b)
     set.sh_sigma = row->sh_sigma > 0.0 ? row->sh_sigma : o.sh_sigma;
     set.thickness = (row->thickness < 0.0 ? row->m->thickness : row->thickness) * radius;
     set.samples = row->samples;
+    set.seed = row->seed;
     set.blur = row->blur;
     set.planes = !row->no_planes;
     set.half = row->half;
