@@ -60,6 +60,7 @@ help:
 	@echo 'make check-hard    the hard cases, all of them; check-threads: the batch under the thread sanitizer'
 	@echo 'make fuzz FUZZ_SECONDS=60   random files and frame ranges, by libFuzzer'
 	@echo 'make bench    error against time of every method (bench-unseen: on scenes rendered afresh)'
+	@echo 'make bench-error   --error: its estimate, and its time beside fixed budgets'
 	@echo 'make bench-paper   cost of ssdo'\''s light and bounce beside the paper, of s3ho beside hemisphere'
 	@echo 'make bench-sampling   error by the sequence that slices, steps and sectors draw from, and by the spacing of steps'
 	@echo 'make bench-frame   cost of a whole frame beside copying its file (bench-frame-readme: into README.md)'
@@ -190,6 +191,17 @@ bench-sampling: deps-bench
 	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench-sequences
 	@sh tests/bench/sequences.sh $(BUILD) $(SAMPLES) $(SEEDS) $(WORD)
 
+# --error: its estimate, and its time beside fixed budgets.
+$(BUILD)/bench-error: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/error.o $(TESTLIB) $(BUILD)/libssdo.a
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lembree3 $(PKG_LIBS)
+.PHONY: bench-error
+bench-error: deps-bench
+	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench-error
+	@mkdir -p $(BUILD)/bench
+	@$(BUILD)/bench-error $(SAMPLES) | tee $(BUILD)/bench/error.md
+.PHONY: bench-error-readme
+bench-error-readme:
+	@sh tests/bench/paste.sh $(BUILD)/bench/error.md bench-error README.md
 .PHONY: bench-paper
 bench-paper: deps-bench
 	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench-paper

@@ -1,10 +1,12 @@
 #version 450 core
-// lint: HORIZON | BITMASK | HORIZON BENT | RUNS | RUNS PLANES BENT | RUNS PLANES | RUNS PLANES LIGHT | RUNS LIGHT VISIBILITY | RUNS PLANES BOUNCE | RUNS PLANES LIGHT BOUNCE EXITANT
+// lint: HORIZON | BITMASK | HORIZON BENT | RUNS | RUNS PLANES BENT | RUNS PLANES CHANGE | RUNS PLANES CHANGE ROUND | RUNS PLANES | RUNS PLANES LIGHT | RUNS LIGHT VISIBILITY | RUNS PLANES BOUNCE | RUNS PLANES LIGHT BOUNCE EXITANT
 // Slices around the view vector, each a set of 64 sectors of equal cosine weight (THEORY.md 2 and 3). With the weight of a slice
 // w = |n_p| (cos n + n sin n), and sums over slices:
 //   occlusion = sum w (open share) / sum w                          so that an empty plane is exactly 1
 //   BENT:   bent = 2/3 N - sum w (blocked directions) / sum w        the cosine-weighted mean open direction: N on an empty plane
 //   LIGHT:  radiance = sum w (open share x environment) / sum w,  visibility = its luminance over that of the open sky
+//   CHANGE: how much the second half of the slices (every other one) moved the occlusion
+//   ROUND:  the sums go on from those of an earlier round of as many slices, between which these fall; together they are one set
 //   BOUNCE: indirect = sum w (blocked share x what the nearest blocker sends) / sum w; with EXITANT the sender is a picture that the
 //           renderer lit, else light that the senders' albedo is still to be multiplied by
 // The sectors are blocked by HORIZON or BITMASK, the older methods, or by RUNS and PLANES, which are `arc`.
@@ -29,12 +31,20 @@ layout(rgba32f, binding = 5) writeonly uniform image2D indirect_image;
 layout(rgba32f, binding = 5) readonly uniform image2D albedo_image;
 layout(rgba32f, binding = 3) writeonly uniform image2D indirect_image;
 #endif
+#endif
+#ifdef CHANGE
+layout(r32f, binding = 4) writeonly uniform image2D change_image; // of the occlusion, by half of the slices
+#endif
+#ifdef ROUND
+layout(rg32f, binding = 5) uniform image2D sums_image; // of earlier rounds: sum w (open share), sum w
+#endif
 
 // What a surface sends to us. The side that the camera does not see is a guess: it looks our way, and what it sees is much what we
 // see, of which this share.
 const float UNSEEN = 0.4;
 vec3 unseen = vec3(0.0);
 
+#ifdef BOUNCE
 vec3 sent_by(ivec2 q, bool seen) {
     vec3 L = seen ? imageLoad(sender_image, q).rgb : unseen;
 #ifndef EXITANT
@@ -77,14 +87,22 @@ void main() {
     float depth = depth_at(p);
     if (depth == 0.0) {
         store(p, 1.0, vec3(0.0), vec3(0.0));
+#ifdef CHANGE
+        imageStore(change_image, p, vec4(0.0));
+#endif
         return;
     }
     vec3 P = position_of(p, depth), N = normal_at(p), V = view_of(P);
     mat3 around = tangent_frame(V);
     vec2 origin = vec2(p) + 0.5;
-    float eye_distance = length(P), open = 0.0, all = 0.0;
+    float eye_distance = length(P), open = 0.0, all = 0.0, first_open = 0.0, first_all = 0.0;
     float tangent = ball_tangent(P);
     vec3 turn = pixel_noise(p, params.seed);
+#ifdef ROUND
+    // The first round's two slices lie at (i + turn.x) / 2 of half a turn; n more, half a step off, fall between the n there are.
+    if (params.before > 0) turn.x = fract(0.5 * float(params.before) * turn.x + 0.5);
+    turn.yz = fract(turn.yz + float(params.before) * vec2(0.6180340, 0.7548777));
+#endif
 #ifdef LIGHT
     Light light = Light(vec3(0.0), 0.0, 0.0);
 #endif
@@ -94,6 +112,13 @@ void main() {
 #endif
 #ifdef BENT
     vec3 shut = vec3(0.0);
+#endif
+#ifdef ROUND
+    if (params.before > 0) {
+        vec2 sums = imageLoad(sums_image, p).xy;
+        first_open = open = sums.x;
+        first_all = all = sums.y;
+    }
 #endif
     for (int i = 0; i < params.slices; i++) {
         float phi = PI * (float(i) + turn.x) / float(params.slices);
@@ -118,6 +143,11 @@ void main() {
 #endif
         open += weight * (1.0 - sector_share(slots.blocked));
         all += weight;
+#ifdef CHANGE
+        bool first = (i & 1) == 0 && params.before == 0;
+        first_open += first ? weight * (1.0 - sector_share(slots.blocked)) : 0.0;
+        first_all += first ? weight : 0.0;
+#endif
 #ifdef LIGHT
         add_sky(light, side, V, across, n, weight, slots.blocked, noise.y);
 #endif
@@ -138,5 +168,11 @@ void main() {
     store(p, open / all, 2.0 / 3.0 * N - shut / all, bounced);
 #else
     store(p, open / all, vec3(0.0), bounced);
+#endif
+#ifdef ROUND
+    imageStore(sums_image, p, vec4(open, all, 0.0, 0.0));
+#endif
+#ifdef CHANGE
+    imageStore(change_image, p, vec4(open / all - first_open / first_all));
 #endif
 }

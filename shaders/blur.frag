@@ -1,10 +1,9 @@
 #version 450 core
 // lint: SCALARS=2 COLOURS=1 | SCALARS=1 COLOURS=0 | SCALARS=0 COLOURS=1
-// One direction of a separable bilateral filter on linear quantities. A tap's weight is a Gaussian of its distance, the agreement
-// of the normals, and the distance of the tap from the centre's tangent plane in pixel footprints (THEORY.md 1.7); weights are
-// always divided out. Pixels without a surface take no part.
+// One direction of a separable bilateral filter (include/bilateral.glsl) on linear quantities; weights are always divided out.
 // SCALARS and COLOURS say how many r32f and rgba32f images go through together.
 #include "include/frame.glsl"
+#include "include/bilateral.glsl"
 
 layout(std140, binding = 1) uniform Params {
     ivec2 step; // (1,0) or (0,1)
@@ -61,19 +60,15 @@ void main() {
         store(centre);
         return;
     }
-    vec3 P = position_of(p, depth), N = normal_at(p);
-    float scale = 1.0 / (params.sharpness * footprint(depth));
-    float sigma = 0.5 * float(params.radius);
+    Centre c = centre_at(p, depth, params.sharpness, params.radius);
     // Differences from the centre are summed, so that a constant passes unchanged to the bit.
     Values sum = Values(0.0, 0.0, vec3(0.0));
     float total = 1.0;
     for (int i = -params.radius; i <= params.radius; i++) {
         ivec2 q = p + i * params.step;
-        float tap_depth = depth_at(q);
-        if (i == 0 || tap_depth == 0.0) continue;
-        float off_plane = dot(N, position_of(q, tap_depth) - P) * scale;
-        float same_way = max(0.0, dot(N, normal_at(q)));
-        float w = exp(-0.5 * (float(i * i) / (sigma * sigma) + off_plane * off_plane)) * pow(same_way, 8.0);
+        if (i == 0) continue;
+        float w = tap_weight(c, q, float(i));
+        if (w == 0.0) continue;
         Values v = load(q);
         sum.scalar0 += w * (v.scalar0 - centre.scalar0);
         sum.scalar1 += w * (v.scalar1 - centre.scalar1);

@@ -12,7 +12,8 @@ layout(std140, binding = 1) uniform ParamsBlock {
     int suns;
     int exitant;
     float inverse_steps;
-    int unused0, unused1;
+    int before;          // slices of earlier rounds
+    int unused1;
     vec4 sun_direction[4]; // camera space, unit; w half its width, radians
     vec4 sun_light[4];     // rgb: irradiance over pi of a surface that faces the sun
     vec4 box_low, box_high; // of all surfaces, map axes, the eye at the origin
@@ -35,7 +36,8 @@ struct Params {
     int suns;
     int exitant;
     float inverse_steps;
+    int before;
 };
 Params params = Params(stored.radius, stored.thickness, stored.kappa, stored.thin, stored.slices, stored.steps, stored.seed,
                        stored.planes, stored.tolerance, stored.level, stored.strength, stored.suns, stored.exitant,
-                       stored.inverse_steps);
+                       stored.inverse_steps, stored.before);

@@ -33,6 +33,7 @@ typedef struct options {
     int quality;       // -1 draft, 0 standard, 1 high: of the method's own number of samples
     bool no_planes;    // --planes off
     int samples;       // 0 = the method's default at that quality
+    double error;      // > 0: sample until the standard error is below it, `samples` at most
     double thickness;  // share of the radius; < 0 auto, INFINITY for inf
     double angle_bias; // degrees
     int sh_bands;      // highest l

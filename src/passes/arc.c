@@ -9,6 +9,9 @@ static const float KAPPA = 1.0f;        // a run is as thick as it is wide
 // How far a run may turn between two steps: the tangent of 52 degrees, and within the radius, where many steps are short, of 65.
 static const float TOLERANCE = 1.3f, SHORT_STEP_TOLERANCE = 2.1f;
 
+// From here on half the slices are a set that resembles the whole, and what the other half changed tells of the noise.
+enum { LEAST_FOR_CHANGE = 4 };
+
 // A filter over the neighbours averages slices but cannot find what steps have missed, so small budgets go into steps: 1 x 8, 1 x
 // 16 and 2 x 16 have lower errors at the same time than 2 x 4, 2 x 8 and 4 x 8. Large ones, which no filter follows, stay near
 // twice as many steps as slices.
@@ -19,7 +22,13 @@ void arc_grid(int samples, int *slices, int *steps)
     *steps = samples / (2 * *slices) > 1 ? samples / (2 * *slices) : 1;
 }
 
-arc_params arc_params_of(const pass_context *c)
+void arc_set_grid(arc_params *p, int slices, int steps)
+{
+    p->slices = slices, p->steps = steps;
+    p->inverse_steps = 1.0f / (float)steps;
+}
+
+arc_params arc_params_of_grid(const pass_context *c, int slices, int steps)
 {
     const pass_settings *s = &c->set;
     arc_params p = {
@@ -32,11 +41,17 @@ arc_params arc_params_of(const pass_context *c)
         .strength = (float)s->bounce_strength,
     };
     if (s->thickness_fixed) p.thin = p.thickness;
-    arc_grid(s->samples, &p.slices, &p.steps);
-    p.inverse_steps = 1.0f / (float)p.steps;
+    arc_set_grid(&p, slices, steps);
     p.tolerance =
         fmaxf(TOLERANCE, fminf(SHORT_STEP_TOLERANCE, 0.5f + 0.1f * (float)p.steps)); // 8 steps a side are long, 16 short
     return p;
+}
+
+arc_params arc_params_of(const pass_context *c)
+{
+    int slices, steps;
+    arc_grid(c->set.samples, &slices, &steps);
+    return arc_params_of_grid(c, slices, steps);
 }
 
 arc_params arc_unlimited_params_of(const pass_context *c)
@@ -104,7 +119,7 @@ static bool make_sunless(pass_context *c, error *e)
 // ---- the passes
 
 // `defines`, and PLANES if there are any.
-static const char *with_planes(const pass_context *c, const char *defines, char *buf, size_t size)
+const char *arc_with_planes(const pass_context *c, const char *defines, char *buf, size_t size)
 {
     snprintf(buf, size, "%s%s", defines, c->planes.count + c->planes.uneven ? "PLANES 1\n" : "");
     return buf;
@@ -117,23 +132,44 @@ static bool make_surface(pass_context *c, error *e)
     char buf[128];
     const pass_binding bindings[] = {{2, &c->surface, GL_WRITE_ONLY}, {7, &c->plane_image, GL_READ_ONLY}};
     return pass_make(c, &c->surface, GL_RG32UI, 0.0f, e) &&
-           pass_run(c, "surface", with_planes(c, "", buf, sizeof buf), &params, sizeof params, bindings, 2, false, e);
+           pass_run(c, "surface", arc_with_planes(c, "", buf, sizeof buf), &params, sizeof params, bindings, 2, false, e);
 }
 
 bool arc_make_inputs(pass_context *c, error *e) { return make_planes(c, e) && make_surface(c, e); }
 
-static bool run_occlusion(pass_context *c, const char *defines, error *e)
+// Bent normals after rounds have found the occlusion: as many slices, whose own occlusion nobody needs.
+static bool run_bent(pass_context *c, const char *defines, error *e)
 {
     arc_params params = arc_params_of(c);
     char with_bent[64], buf[128];
-    snprintf(with_bent, sizeof with_bent, "%s%s", defines, c->want_bent ? "BENT 1\n" : "");
-    if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e)) return false;
-    if (c->want_bent && !pass_make(c, &c->bent, GL_RGBA32F, 0.0f, e)) return false;
-    const pass_binding bindings[] = {{2, &c->occlusion, GL_WRITE_ONLY},
+    gpu_image unused = {0};
+    snprintf(with_bent, sizeof with_bent, "%sBENT 1\n", defines);
+    const pass_binding bindings[] = {{2, &unused, GL_WRITE_ONLY},
                                      {3, &c->bent, GL_WRITE_ONLY},
                                      {6, &c->surface, GL_READ_ONLY},
                                      {7, &c->plane_image, GL_READ_ONLY}};
-    return pass_run(c, "arc", with_planes(c, with_bent, buf, sizeof buf), &params, sizeof params, bindings, 4, false, e);
+    bool ok = pass_make(c, &unused, GL_R32F, 1.0f, e) && pass_make(c, &c->bent, GL_RGBA32F, 0.0f, e) &&
+              arc_run_at_rounds(c, "arc bent", arc_with_planes(c, with_bent, buf, sizeof buf), &params, bindings, 4, e);
+    gpu_image_free(&unused);
+    return ok;
+}
+
+static bool run_occlusion(pass_context *c, const char *defines, error *e)
+{
+    if (c->set.error > 0.0) return arc_run_rounds(c, defines, e) && (!c->want_bent || run_bent(c, defines, e));
+    arc_params params = arc_params_of(c);
+    char with_bent[64], buf[128];
+    bool change = params.slices >= LEAST_FOR_CHANGE && c->set.blur > 0;
+    snprintf(with_bent, sizeof with_bent, "%s%s%s", defines, c->want_bent ? "BENT 1\n" : "", change ? "CHANGE 1\n" : "");
+    if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e)) return false;
+    if (c->want_bent && !pass_make(c, &c->bent, GL_RGBA32F, 0.0f, e)) return false;
+    if (change && !pass_make(c, &c->change, GL_R32F, 0.0f, e)) return false;
+    const pass_binding bindings[] = {{2, &c->occlusion, GL_WRITE_ONLY},
+                                     {3, &c->bent, GL_WRITE_ONLY},
+                                     {4, &c->change, GL_WRITE_ONLY},
+                                     {6, &c->surface, GL_READ_ONLY},
+                                     {7, &c->plane_image, GL_READ_ONLY}};
+    return pass_run(c, "arc", arc_with_planes(c, with_bent, buf, sizeof buf), &params, sizeof params, bindings, 5, false, e);
 }
 
 // What the planes send: one work group that reads the whole frame's grid.
@@ -182,7 +218,7 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
     snprintf(defines, sizeof defines, "RUNS 1\n%s%s%s%s", sky ? "LIGHT 1\n" : "", visibility ? "VISIBILITY 1\n" : "",
              bounce ? "BOUNCE 1\n" : "", bounce && exitant ? "EXITANT 1\n" : "");
     const char *name = sky && bounce ? "arc light+bounce" : sky ? "arc light" : "arc bounce";
-    bool ok = pass_run(c, name, with_planes(c, defines, buf, sizeof buf), &params, sizeof params, bindings, count, false, e);
+    bool ok = arc_run_at_rounds(c, name, arc_with_planes(c, defines, buf, sizeof buf), &params, bindings, count, e);
     c->environment = whole;
     return ok;
 }

@@ -10,7 +10,7 @@ typedef struct arc_params {
     float tolerance, level, strength;
     int suns, exitant;
     float inverse_steps;
-    int unused[2];
+    int before, unused;
     float sun_direction[SUNS_MAX][4], sun_light[SUNS_MAX][4];
     float box[2][4], rest[9][4];
 } arc_params;
@@ -23,6 +23,28 @@ arc_params arc_unlimited_params_of(const pass_context *c);
 
 // What all marches read, once a frame: the planes and their image, the packed surfaces.
 bool arc_make_inputs(pass_context *c, error *e);
+
+// `defines`, and PLANES if there are any.
+const char *arc_with_planes(const pass_context *c, const char *defines, char *buf, size_t size);
+
+// The parameters for another grid than that of c->set.samples.
+void arc_set_grid(arc_params *p, int slices, int steps);
+arc_params arc_params_of_grid(const pass_context *c, int slices, int steps);
+
+// ---- rounds: --error
+
+// After round k a tile has had ROUND_SLICES << k slices.
+enum { ROUND_SLICES = 2, ROUND_STEPS = 16, ROUNDS_MAX = 12 };
+int arc_round_slices(int round); // in all, after it
+int arc_round_steps(int round);  // a side, of what it adds
+
+// Occlusion, in rounds that double the slices of a tile until its estimated standard error (denoise.frag, root mean square over
+// the tile's surfaces) is below c->set.error or a further round would take more than c->set.most_samples. `defines` names what
+// blocks. Fills c->occlusion, denoised, c->rounds and, if wanted, c->error.
+bool arc_run_rounds(pass_context *c, const char *defines, error *e);
+// pass_run of "arc" (or with a `name` for the report), after rounds with as many slices as each tile came to.
+bool arc_run_at_rounds(pass_context *c, const char *name, const char *defines, const arc_params *params,
+                       const pass_binding *bindings, int binding_count, error *e);
 
 void arc_put(float to[4], vec3 a, double w);
 

@@ -41,3 +41,38 @@ bool pass_blur(pass_context *c, gpu_image *scalar0, gpu_image *scalar1, gpu_imag
     gpu_image_free(&t2);
     return ok;
 }
+
+typedef struct denoise_params {
+    int radius;
+    float sharpness;
+} denoise_params;
+
+bool pass_denoise_across(pass_context *c, const pass_denoising *d, error *e)
+{
+    const denoise_params params = {c->set.blur, SHARPNESS};
+    const pass_binding bindings[] = {{2, &c->occlusion, GL_READ_ONLY}, {3, &c->change, GL_READ_ONLY}};
+    const gpu_image *targets[] = {d->moments};
+    return pass_draw(c, "denoise", "ACROSS 1\n", &params, sizeof params, bindings, 2, targets, 1, false, e);
+}
+
+bool pass_denoise_down(pass_context *c, const pass_denoising *d, error *e)
+{
+    const denoise_params params = {c->set.blur, SHARPNESS};
+    const pass_binding bindings[] = {
+        {2, &c->occlusion, GL_READ_ONLY}, {3, &c->change, GL_READ_ONLY}, {4, d->moments, GL_READ_ONLY}};
+    const gpu_image *targets[] = {d->result, d->square};
+    return pass_draw(c, "denoise", d->square ? "ERRORS 1\n" : NULL, &params, sizeof params, bindings, 3, targets, 2, false, e);
+}
+
+bool pass_denoise(pass_context *c, error *e)
+{
+    gpu_image moments = {0}, result = {0};
+    const pass_denoising d = {&moments, &result, NULL};
+    bool ok = pass_make(c, &moments, GL_RGBA32F, 0.0f, e) && pass_make(c, &result, GL_R32F, 1.0f, e) &&
+              pass_denoise_across(c, &d, e) && pass_denoise_down(c, &d, e);
+    if (ok) swap(&c->occlusion, &result);
+    c->denoised = ok;
+    gpu_image_free(&moments);
+    gpu_image_free(&result);
+    return ok;
+}

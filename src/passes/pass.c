@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -107,15 +108,18 @@ bool pass_begin(pass_context *c, gpu *g, const gbuffer *gb, const environment *e
 
 void pass_end(pass_context *c)
 {
-    gpu_image *images[] = {&c->depth,    &c->normal,         &c->albedo,   &c->beauty,        &c->material,
-                           &c->emission, &c->diffuse_direct, &c->coverage, &c->occlusion,     &c->visibility,
-                           &c->radiance, &c->indirect,       &c->specular, &c->diffuse_share, &c->composite,
-                           &c->diffuse,  &c->depthmask,      &c->bent,     &c->sh[0],         &c->sh[1],
-                           &c->sh[2],    &c->sh[3],          &c->sh[4],    &c->surface,       &c->plane_image};
+    gpu_image *images[] = {&c->depth,          &c->normal,        &c->albedo,    &c->beauty,     &c->material,  &c->emission,
+                           &c->diffuse_direct, &c->coverage,      &c->occlusion, &c->visibility, &c->radiance,  &c->indirect,
+                           &c->specular,       &c->diffuse_share, &c->composite, &c->diffuse,    &c->depthmask, &c->bent,
+                           &c->sh[0],          &c->sh[1],         &c->sh[2],     &c->sh[3],      &c->sh[4],     &c->surface,
+                           &c->plane_image,    &c->change,        &c->error};
     for (size_t i = 0; i < sizeof images / sizeof *images; i++) gpu_image_free(images[i]);
     gpu_uniforms_free(c->frame_uniforms);
     gpu_uniforms_free(c->params_uniforms);
     gpu_tiles_free(&c->tiles);
+    gpu_tiles_free(&c->rounds.tiles);
+    free(c->rounds.last);
+    c->rounds.last = NULL;
     c->frame_uniforms = c->params_uniforms = 0;
 }
 

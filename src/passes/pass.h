@@ -34,6 +34,8 @@ typedef struct pass_settings {
     double thickness;     // scene units; INFINITY allowed
     bool thickness_fixed; // asked for by the user: no method may find a better one
     int samples;
+    double error;      // > 0: standard error of the occlusion to come below, in rounds
+    int most_samples;  // of those rounds
     int blur;          // pixels, 0 none
     int sh_bands;      // s3ho: highest l, 2 (0 too) or 3
     double sh_sigma;   // s3ho: radians of the low-pass
@@ -68,6 +70,18 @@ typedef struct pass_sunless {
     gpu_image map;     // id 0: there are no suns, the whole map serves
 } pass_sunless;
 
+enum { ROUNDS_LEAST_SAMPLES = 64, ROUNDS_MOST_SAMPLES = 2048 }; // of the first round; of all where nobody says
+
+// What --error has come to.
+typedef struct pass_rounds {
+    int count;           // rounds that were run; 0: none, the number of samples was given
+    gpu_tiles tiles;     // of GPU_TILE pixels, whatever the passes' own
+    unsigned char *last; // of each tile, index of its last round
+    int above;           // tiles that ran out of samples
+    int most_samples;    // that a pixel had
+    double mean_samples; // a pixel of the occupied tiles
+} pass_rounds;
+
 typedef struct pass_context {
     gpu *g;
     log_t *log;
@@ -76,6 +90,7 @@ typedef struct pass_context {
     pass_settings set;
     bool want_diffuse; // the composite pass also writes the diffuse layer
     bool want_bent;
+    bool want_error;                     // the standard error, after rounds
     bool want_indirect;                  // the method's own loop makes the bounce too, if it can
     bool want_radiance, want_visibility; // what the method's own loop should make besides occlusion
 
@@ -83,6 +98,8 @@ typedef struct pass_context {
     gpu_image depth, normal, albedo, beauty, material, emission, diffuse_direct, coverage, environment;
     // Layers; id 0 until their pass has run.
     gpu_image occlusion, visibility, radiance, indirect, specular, diffuse_share, composite, diffuse, depthmask;
+    gpu_image change;        // how much the second half of a method's slices moved the occlusion; for pass_denoise
+    gpu_image error;         // estimated standard error of the occlusion
     gpu_image bent;          // mean open direction of the cosine-weighted hemisphere, camera space: 2/3 long where all is open
     gpu_image sh[SH_IMAGES]; // SH vector of cosine-weighted visibility, coefficients 0 1 2 | 3 4 5 | 6 7 8 and, with four bands,
                              // | 9 10 11 12 | 13 14 15
@@ -97,7 +114,9 @@ typedef struct pass_context {
     struct trace_scene *trace;         // the same; for raytrace
     int threads;
     bool suns_apart;  // radiance and visibility lack the suns of `sunless`, which bear no filter, until pass_suns adds them
+    bool denoised;    // the occlusion is, and bears no blur
     plane_set planes; // found by the pass that uses them
+    pass_rounds rounds;
 
     GLuint frame_uniforms, params_uniforms;
     gpu_tiles tiles;
@@ -157,6 +176,15 @@ bool pass_s3ho(pass_context *c, error *e);        // -> sh, occlusion, radiance,
 bool pass_ssdo(pass_context *c, error *e);        // -> occlusion, radiance, visibility
 bool pass_vpl(pass_context *c, error *e);         // radiance or beauty, albedo -> indirect
 bool pass_ssdo_bounce(pass_context *c, error *e); // radiance or beauty, albedo -> indirect
+// The occlusion by a filter that knows its noise from `change`; other pictures by one that does not.
+typedef struct pass_denoising {
+    const gpu_image *moments; // between the directions, rgba32f
+    const gpu_image *result;
+    const gpu_image *square; // of the error that is left; NULL: not wanted
+} pass_denoising;
+bool pass_denoise_across(pass_context *c, const pass_denoising *d, error *e); // one direction of it, then the other
+bool pass_denoise_down(pass_context *c, const pass_denoising *d, error *e);
+bool pass_denoise(pass_context *c, error *e);                                                          // occlusion: in place
 bool pass_blur(pass_context *c, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e); // in place; NULL = none
 // What the method and the bounce made of a frame of half the size (gbuffer/half.h), brought to the size of `c`: its occlusion,
 // visibility, radiance, indirect, bent and sh, as far as `small` has them and `c` has not; and indirect alone, where it is made

@@ -31,7 +31,10 @@ static bool run_method(pass_context *c, const plan *p, error *e)
 {
     if (!p->method->run(c, e)) return false;
     if (!p->blur) return true;
-    return pass_blur(c, &c->occlusion, &c->visibility, &c->radiance, e) && (!c->bent.id || pass_blur(c, NULL, NULL, &c->bent, e));
+    if (c->change.id && !c->denoised && !pass_denoise(c, e)) return false;
+    gpu_image *plain = c->denoised ? NULL : &c->occlusion;
+    if ((plain || c->visibility.id || c->radiance.id) && !pass_blur(c, plain, &c->visibility, &c->radiance, e)) return false;
+    return !c->bent.id || pass_blur(c, NULL, NULL, &c->bent, e);
 }
 
 static bool finish_light(pass_context *c, const plan *p, error *e)
@@ -123,6 +126,17 @@ static bool needs_coverage(const gbuffer *gb)
     return false;
 }
 
+static void take_rounds(const job *j, frame_result *r, const pass_rounds *rounds)
+{
+    r->rounds = rounds->count, r->tiles_above = rounds->above, r->mean_samples = rounds->mean_samples;
+    if (r->rounds == 0) return;
+    log_info(j->log, "--error %g: %.0f samples a pixel in the mean, %d rounds", r->set.error, r->mean_samples, r->rounds);
+    if (r->tiles_above > 0)
+        log_warn(j->log, "error",
+                 "%d of %d tiles have an estimated standard error above %g after %d samples; --samples allows more",
+                 r->tiles_above, rounds->tiles.occupied_count, r->set.error, rounds->most_samples);
+}
+
 bool filter_frame(job *j, frame_result *r, error *e)
 {
     pass_context c;
@@ -139,6 +153,7 @@ bool filter_frame(job *j, frame_result *r, error *e)
     c.threads = j->threads;
     c.want_radiance = r->plan.want_radiance;
     c.want_bent = r->plan.want_bent;
+    c.want_error = r->plan.want_error;
     c.want_visibility = r->plan.want_visibility && r->plan.method->fills_radiance;
     for (int k = 0; k < SH_IMAGES; k++) c.stored_sh[k] = r->stored_sh[k];
     c.tiles.stop = j->stop;
@@ -154,6 +169,7 @@ bool filter_frame(job *j, frame_result *r, error *e)
     memcpy(r->uploads, c.uploads, sizeof r->uploads);
     r->upload_count = c.upload_count;
     r->planes = c.planes;
+    take_rounds(j, r, &c.rounds);
     r->tile_size = c.tiles.size, r->tiles = c.tiles.columns * c.tiles.rows, r->tiles_occupied = c.tiles.occupied_count;
     pass_end(&c);
     return ok;

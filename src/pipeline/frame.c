@@ -148,10 +148,10 @@ static int larger_side(const frame_result *r)
 }
 
 // Refuses, before any pixel is read, a frame that the memory cannot hold. The bytes a pixel are the peak measured with 13
-// channels and four layers, images of a software renderer included.
-static bool fits_memory(const frame_result *r, error *e)
+// channels and four layers, images of a software renderer included; the rounds of --error keep another 40.
+static bool fits_memory(const job *j, const frame_result *r, error *e)
 {
-    const double bytes = 230.0, gib = 1024.0 * 1024.0 * 1024.0;
+    const double bytes = j->o->error > 0.0 ? 270.0 : 230.0, gib = 1024.0 * 1024.0 * 1024.0;
     const box2 w = r->file->parts[r->resolution.main_part].data_window;
     double needed = bytes * box2_width(w) * box2_height(w), available = (double)mem_available();
     if (needed <= available) return true;
@@ -181,7 +181,7 @@ static bool begin_reading(const job *j, const char *const *inputs, int count, fr
     bool ok = exr_file_open_all(inputs, count, &r->file, e) && list_views(j, r, e);
     for (frame_result *v = r; ok && v; v = v->next_view) ok = resolve_view(j, v, e);
     lap(r, STAGE_READ, &t);
-    return ok && fits_memory(r, e);
+    return ok && fits_memory(j, r, e);
 }
 
 static bool finish_reading(const job *j, frame_result *r, error *e)
@@ -328,8 +328,11 @@ static pass_settings settings_of(const job *j, const frame_result *r, double rad
         .thickness = share * radius,
         .thickness_fixed = o->thickness >= 0.0,
         .planes = !o->no_planes,
-        .half = (o->half < 0 ? o->quality < 0 : o->half) && !r->plan.from_sh, // stored layers are whole already
-        .samples = o->samples > 0 ? o->samples : samples_at(m, o->quality),
+        .half =
+            (o->half < 0 ? o->quality < 0 : o->half) && !r->plan.from_sh && o->error <= 0.0, // stored layers are whole already
+        .samples = o->samples > 0 && o->error <= 0.0 ? o->samples : samples_at(m, o->quality),
+        .error = o->error,
+        .most_samples = o->samples > 0 ? o->samples : ROUNDS_MOST_SAMPLES,
         .angle_bias = o->angle_bias,
         .sh_bands = o->sh_bands,
         .sh_sigma = o->sh_sigma,

@@ -48,6 +48,8 @@ typedef struct frame_result {
     proxy_set proxies; // --proxies
     plane_set planes;  // that stood in for what the camera does not see; none where the method has no use for them
     int tile_size, tiles, tiles_occupied; // tiles without a surface are not dispatched (but for the composite of a background)
+    int rounds, tiles_above;              // of --error; 0 rounds: the number of samples was given
+    double mean_samples;                  // a pixel, of those rounds
     size_t clamped;                       // samples of ours that a half could not hold
     // By channel, width * height of types[layer], as they are written, and the same as floats before rounding, interleaved. NULL
     // where a layer was not made, or its floats not kept.

@@ -10,7 +10,7 @@ const layer_info layer_table[LAYER_COUNT] = {
     [LAYER_DIFFUSE] = {"diffuse", "RGB", false},     [LAYER_DEPTHMASK] = {"depthmask", "R", false},
     [LAYER_BENT] = {"bent", "XYZ", false},           [LAYER_SH_0] = {"sh_0", "RGB", false},
     [LAYER_SH_1] = {"sh_1", "RGB", false},           [LAYER_SH_2] = {"sh_2", "RGB", false},
-    [LAYER_SH_3] = {"sh_3", "HIJKLMN", false},
+    [LAYER_SH_3] = {"sh_3", "HIJKLMN", false},       [LAYER_ERROR] = {"error", "R", false},
 };
 
 static bool unknown(const char *name, size_t n, error *e)

@@ -20,6 +20,7 @@ typedef enum layer_id {
     LAYER_SH_1,
     LAYER_SH_2,
     LAYER_SH_3,
+    LAYER_ERROR,
     LAYER_COUNT
 } layer_id;
 

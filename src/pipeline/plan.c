@@ -59,6 +59,7 @@ static bool drop_impossible(plan *p, const options *o, const exr_file *file, con
     for (int l = LAYER_SH_0; l <= LAYER_SH_3; l++)
         if (!p->method->fills_sh && !cannot(p, o, file, (layer_id)l, NULL, "only --method s3ho makes it", log, e)) return false;
     if (o->sh_bands != 3 && !cannot(p, o, file, LAYER_SH_3, NULL, "it needs --sh-bands 3", log, e)) return false;
+    if (o->error <= 0.0 && !cannot(p, o, file, LAYER_ERROR, NULL, "it needs --error E", log, e)) return false;
     if (!in->roughness &&
         !cannot(p, o, file, LAYER_SPECULAR, "roughness", "no roughness channel was found; name it with --roughness", log, e))
         return false;
@@ -105,6 +106,22 @@ static void list_steps(plan *p, const options *o, const inputs *in)
     step(p, "environment", p->light, o->env ? "--env" : "white environment of radiance 1", "no layer needs light");
 }
 
+// What --error cannot be with.
+static bool check_rounds(const method *m, const options *o, error *e)
+{
+    if (o->error <= 0.0) return true;
+    if (!m->has_rounds)
+        return err_set(e, ERR_USAGE, NULL, NULL,
+                       "--error works with the methods arc, gtao and bitmask, not with %s; give it a number of --samples",
+                       m->name);
+    if (o->half == 1)
+        return err_set(e, ERR_USAGE, NULL, NULL, "--error works at full resolution; leave --resolution half or --error away");
+    if (o->samples > 0 && o->samples < ROUNDS_LEAST_SAMPLES)
+        return err_set(e, ERR_USAGE, NULL, NULL, "--samples must be at least %d with --error, which starts with as many",
+                       ROUNDS_LEAST_SAMPLES);
+    return true;
+}
+
 bool plan_make(const options *o, const exr_file *file, const resolution *r, plan *p, log_t *log, error *e)
 {
     const char *name = o->from_sh ? "s3ho" : o->method ? o->method : methods[METHOD_DEFAULT].name;
@@ -115,7 +132,7 @@ bool plan_make(const options *o, const exr_file *file, const resolution *r, plan
     if (p->method->needs_mesh && !o->mesh)
         return err_set(e, ERR_USAGE, NULL, NULL, "--method %s needs the scene's surfaces; name them with --mesh FILE.obj", name);
     if (o->mesh && !p->method->needs_mesh) log_warn(log, "mesh", "--mesh is not used: only --method raytrace does");
-    if (!layers_parse(o->layers, &p->layers, e)) return false;
+    if (!check_rounds(p->method, o, e) || !layers_parse(o->layers, &p->layers, e)) return false;
     inputs in = inputs_of(o, r);
     p->relight = in.env || !in.beauty;
     if (!drop_impossible(p, o, file, &in, log, e)) return false;
@@ -130,6 +147,7 @@ bool plan_make(const options *o, const exr_file *file, const resolution *r, plan
     p->want_radiance = light && p->method->fills_radiance;
     p->want_visibility = asked(p, LAYER_VISIBILITY) || (relit && p->visibility_mode);
     p->want_bent = asked(p, LAYER_BENT);
+    p->want_error = asked(p, LAYER_ERROR);
     p->irradiance = light && !p->method->fills_radiance;
     p->specular = in.roughness && in.env && (relit || asked(p, LAYER_SPECULAR));
     p->light = light || (p->bounce && traces_bounce(p, o)) || p->want_visibility || p->specular;

@@ -23,7 +23,7 @@ typedef struct plan {
     bool light;      // the environment is needed on the GPU
     bool relight;    // the composite is lit by us; otherwise the beauty is occluded
     bool visibility_mode;
-    bool want_radiance, want_visibility, want_bent;
+    bool want_radiance, want_visibility, want_bent, want_error;
     bool irradiance, blur, look, bounce, edges, specular, depthmask, composite;
     bool bounce_in_composite;
     bool from_sh;            // the method's SH vector is read from the file

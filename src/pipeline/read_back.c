@@ -21,7 +21,7 @@ static inline float sane(float v, bool share, bool light)
 static void sanitise(layer_id l, float *v, size_t pixels, size_t stored, size_t channels)
 {
     bool share = l == LAYER_OCCLUSION || l == LAYER_VISIBILITY,
-         light = l == LAYER_RADIANCE || l == LAYER_INDIRECT || l == LAYER_SPECULAR;
+         light = l == LAYER_RADIANCE || l == LAYER_INDIRECT || l == LAYER_SPECULAR || l == LAYER_ERROR;
     float *to = v;
     for (size_t i = 0; i < pixels; i++, v += stored)
         for (size_t k = 0; k < channels; k++) *to++ = sane(v[k], share, light);
@@ -132,6 +132,7 @@ bool read_back(const job *j, const pass_context *c, frame_result *r, error *e)
         [LAYER_SH_1] = &c->sh[1],
         [LAYER_SH_2] = &c->sh[2],
         [LAYER_SH_3] = &c->sh[3],
+        [LAYER_ERROR] = &c->error,
     };
     for (int i = 0; i < LAYER_COUNT; i++)
         if (r->plan.layers & 1u << i && !read_layer(j, images[i], (layer_id)i, r, e)) return false;

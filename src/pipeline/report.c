@@ -154,6 +154,17 @@ static json_object *planes_of(const frame_result *r)
     return list;
 }
 
+// Of --error.
+static json_object *rounds_of(const frame_result *r)
+{
+    json_object *o = json_object_new_object();
+    json_put_number(o, "error", r->set.error);
+    json_put(o, "rounds", json_object_new_int(r->rounds));
+    json_put_number(o, "mean_samples", r->mean_samples);
+    json_put(o, "tiles_above", json_object_new_int(r->tiles_above));
+    return o;
+}
+
 static json_object *report_of(const job *j, const frame_result *r, const char *output)
 {
     json_object *o = json_object_new_object(), *evidence = json_object_new_array(), *layers = json_object_new_array(),
@@ -172,7 +183,8 @@ static json_object *report_of(const job *j, const frame_result *r, const char *o
     json_put(o, "evidence", evidence);
     json_put(o, "camera", camera_of(r));
     json_put_text(o, "method", r->plan.method->name);
-    json_put(o, "samples", json_object_new_int(r->set.samples));
+    if (r->rounds == 0) json_put(o, "samples", json_object_new_int(r->set.samples));
+    if (r->rounds > 0) json_put(o, "rounds", rounds_of(r));
     json_put_number(o, "radius", r->set.radius);
     json_put_number(o, "thickness", r->set.thickness);
     json_put_number(o, "valid_share", pixels > 0 ? (double)r->gb.valid / pixels : 0.0);

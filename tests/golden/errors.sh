@@ -53,6 +53,11 @@ expect 2 "--mesh" "$sample" -o "$dir/out.exr" --method raytrace
 expect 3 "no_mesh.obj" "$sample" -o "$dir/out.exr" --method raytrace --mesh no_mesh.obj
 expect 3 "no face" "$sample" -o "$dir/out.exr" --method raytrace --mesh "$dir/text.exr"
 expect 3 "of the picture's points" "$sample" -o "$dir/out.exr" --method raytrace --mesh samples/box.obj
+expect 2 "not with ssdo" "$sample" -o "$dir/out.exr" --error 0.02 --method ssdo
+expect 2 "full resolution" "$sample" -o "$dir/out.exr" --error 0.02 --resolution half
+expect 2 "at least 64" "$sample" -o "$dir/out.exr" --error 0.02 --samples 63
+expect 2 "--error must be" "$sample" -o "$dir/out.exr" --error 1
+expect 3 "it needs --error" "$sample" -o "$dir/out.exr" --layers error
 expect 2 "--frobnicate" "$sample" -o "$dir/out.exr" --frobnicate
 expect 3 "no_sky.exr" "$sample" -o "$dir/out.exr" --env no_sky.exr
 # A driver list that names nothing: no EGL on this machine, as far as the program can see.

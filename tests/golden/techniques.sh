@@ -52,6 +52,7 @@ technique() {
 all=occlusion,radiance,indirect,composite
 env="--env $dir/sky_soft.exr"
 technique arc $all,bent,visibility $env
+technique error $all,error,bent $env --error 0.02 --samples 512
 technique half $all,bent $env --resolution half
 technique proxies $all $env --proxies "$dir/proxies.####.json"
 technique ssdo $all $env --method ssdo
@@ -64,6 +65,7 @@ technique hbao occlusion,radiance $env --method hbao
 technique bias occlusion,radiance $env --method hbao --angle-bias 30
 technique alchemy occlusion,radiance $env --method alchemy
 technique gtao occlusion,radiance,bent $env --method gtao
+technique gtao-error occlusion,error,bent --method gtao --error 0.02 --samples 512
 technique bitmask occlusion,radiance,bent $env --method bitmask
 technique none radiance,composite $env --bounce none
 technique bounce-ssdo indirect $env --bounce ssdo

@@ -45,6 +45,7 @@ bool rig_run(rig *r, const gbuffer *gb, const method *m, const pass_settings *se
     out->plan = (plan){.method = m,
                        .layers = layers,
                        .want_radiance = light && m->fills_radiance,
+                       .want_error = layers & 1u << LAYER_ERROR,
                        .want_bent = layers & 1u << LAYER_BENT,
                        .want_visibility = layers & 1u << LAYER_VISIBILITY,
                        .irradiance = light && !m->fills_radiance,

@@ -1,0 +1,73 @@
+#version 450 core
+// lint: ACROSS | ERRORS | NOTHING
+// A filter that knows the noise it is to remove. From the edge-aware means (include/bilateral.glsl) over a window of the estimate m,
+// of its `change` c when the other half of the slices came in, and of their squares it takes
+//   S = mean(m^2) - mean(m)^2   the variance in the window, of noise and of the picture
+//   g = max(0, S - v) / S       the share of the picture in it
+//   result = mean(m) + g (m - mean(m))
+// which errs least of all mixtures of m and mean(m) (the filter of Wiener; Lee 1980). Where sampling has converged v is nothing and
+// m stays as it is.
+// ACROSS: the first direction, which leaves the means along it. ERRORS: also the square of what the result still errs by, from the
+// change that is left and the picture that is lost.
+#include "include/frame.glsl"
+#include "include/bilateral.glsl"
+
+layout(std140, binding = 1) uniform Params {
+    int radius; // pixels
+    float sharpness;
+} params;
+
+layout(r32f, binding = 2) readonly uniform image2D estimate_image;
+layout(r32f, binding = 3) readonly uniform image2D change_image;
+#ifdef ACROSS
+layout(location = 0) out vec4 moments_out; // means of m, c, m^2, c^2
+const ivec2 STEP = ivec2(1, 0);
+#else
+layout(rgba32f, binding = 4) readonly uniform image2D moments_image;
+layout(location = 0) out float result_out;
+const ivec2 STEP = ivec2(0, 1);
+#ifdef ERRORS
+layout(location = 1) out float error_out;
+#endif
+#endif
+
+vec4 moments_at(ivec2 q) {
+#ifdef ACROSS
+    float m = imageLoad(estimate_image, q).r, c = imageLoad(change_image, q).r;
+    return vec4(m, c, m * m, c * c);
+#else
+    return imageLoad(moments_image, q);
+#endif
+}
+
+void main() {
+    ivec2 p = this_pixel();
+    float depth = depth_at(p);
+    vec4 centre = moments_at(p), sum = vec4(0.0);
+    float total = 1.0;
+    if (depth != 0.0) {
+        Centre c = centre_at(p, depth, params.sharpness, params.radius);
+        // Differences from the centre are summed, so that a constant passes unchanged to the bit.
+        for (int i = -params.radius; i <= params.radius; i++) {
+            ivec2 q = p + i * STEP;
+            if (i == 0) continue;
+            float w = tap_weight(c, q, float(i));
+            if (w == 0.0) continue;
+            sum += w * (moments_at(q) - centre);
+            total += w;
+        }
+    }
+    vec4 mean = centre + sum / total;
+#ifdef ACROSS
+    moments_out = mean;
+#else
+    float m = imageLoad(estimate_image, p).r;
+    float S = max(0.0, mean.z - mean.x * mean.x), seen = max(0.0, S - mean.w);
+    float g = S > 0.0 ? seen / S : 0.0;
+    result_out = depth == 0.0 ? m : mix(mean.x, m, g);
+#ifdef ERRORS
+    float change = mix(mean.y, imageLoad(change_image, p).r, g);
+    error_out = depth == 0.0 ? 0.0 : change * change + (1.0 - g) * (1.0 - g) * seen;
+#endif
+#endif
+}

@@ -1,0 +1,29 @@
+#version 450 core
+// Sum of the squared errors of a tile's surfaces, and their number. One work group a tile; sums are taken in a fixed order, so that
+// the same picture stops at the same budgets.
+#include "include/frame.glsl"
+
+layout(std140, binding = 1) uniform Params {
+    int size; // of a tile, pixels
+    int columns;
+} params;
+
+layout(r32f, binding = 2) readonly uniform image2D error_image; // squares
+layout(std430, binding = 0) writeonly buffer Tiles { vec2 tiles[]; };
+
+shared vec2 parts[64];
+
+void main() {
+    ivec2 corner = ivec2(gl_WorkGroupID.xy) * params.size, here = ivec2(gl_LocalInvocationID.xy);
+    vec2 sum = vec2(0.0);
+    for (int y = here.y; y < params.size; y += 8)
+        for (int x = here.x; x < params.size; x += 8) {
+            ivec2 p = corner + ivec2(x, y);
+            if (depth_at(p) != 0.0) sum += vec2(imageLoad(error_image, p).r, 1.0);
+        }
+    parts[gl_LocalInvocationIndex] = sum;
+    barrier();
+    if (gl_LocalInvocationIndex != 0u) return;
+    for (int i = 1; i < 64; i++) sum += parts[i];
+    tiles[int(gl_WorkGroupID.y) * params.columns + int(gl_WorkGroupID.x)] = sum;
+}
