@@ -17,7 +17,7 @@ const float BELIEVED_BENT = 30.0;
 #endif
 
 // What is hidden behind a surface sends this share of what the surface does.
-const float HIDDEN = 0.6;
+const float HIDDEN = 0.5;
 
 struct Run {
     bool alive, starts; // starts: begins at its own silhouette
