@@ -43,10 +43,11 @@ void finish(inout Sectors slots, Side s, Walk k, Run r, bool ends, bool now) {
     float thickness = max(r.width, r.starts && ends ? params.thin : params.thickness);
 #ifdef SUNS
     // A sharp shadow ends where the back is, which is a guess: every depth up to twice the guess is as likely, so each takes a share of
-    // the sectors.
+    // the sectors. A thickness that the user gave is no guess.
     uvec2 mask = uvec2(0u);
     for (int i = 0; i < BACKS; i++) {
-        float back = share(s, r.rim + thickness * float(2 * i + 1) / float(BACKS) * away(s, r.rim, r.rim_inverse));
+        float depth = thickness * (params.kappa == 0.0 ? 1.0 : float(2 * i + 1) / float(BACKS));
+        float back = share(s, r.rim + depth * away(s, r.rim, r.rim_inverse));
         mask |= sectors(r.low, max(r.high, back), k.jitter) & (0x11111111u << uint(i));
     }
 #else

@@ -8,11 +8,13 @@ layout(rgba32f, binding = 7) readonly uniform image2D planes_image;
 
 const int CHORDS = 6; // directions tested of the arc that a plane could block
 const float BELIEVED_PLANE = 1.5; // beyond the frame a plane is believed up to here, in half widths of its support
-const float ROOM = 0.004; // of the depth: as far as a plane may lie off its own surface, and a little more
-const float UNEVEN_ROOM = 0.1; // the same of uneven ground
+const float UNEVEN_LEAST = 0.04; // nearer than this share of the room uneven ground is the receiver's own
 
-// True if the recorded surface at a pixel lies in front of depth z, or (with a negative room) at it.
-bool hidden(float recorded, float z, float room) { return recorded != 0.0 && z > recorded * (1.0 + room); }
+// True if the recorded surface at a pixel lies in front of depth z, or (with a negative room) at it. A room is a share of the depth,
+// with an orthographic camera a length: twice as far as a plane's own surface may lie off it.
+bool hidden(float recorded, float z, float room) {
+    return recorded != 0.0 && z > (is_orthographic() ? recorded + room : recorded * (1.0 + room));
+}
 
 // The pixel where a line leaves the frame.
 struct Border { vec2 ray; float recorded; };
@@ -47,8 +49,9 @@ void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, 
     for (int i = 0; i < params.planes; i++) {
         vec4 equation = imageLoad(planes_image, ivec2(PLANE_EQUATION, i));
         vec4 u = imageLoad(planes_image, ivec2(PLANE_U, i)), v = imageLoad(planes_image, ivec2(PLANE_V, i));
-        bool uneven = imageLoad(planes_image, ivec2(PLANE_LIGHT, i)).w < 0.0;
-        float room = uneven ? UNEVEN_ROOM : ROOM;
+        float off = imageLoad(planes_image, ivec2(PLANE_LIGHT, i)).w, room = 2.0 * abs(off);
+        bool uneven = off < 0.0;
+        float least = room * (uneven ? UNEVEN_LEAST : 1.0) * (is_orthographic() ? 1.0 : P.z);
         // Distance to the plane along direction t: height / (normal . (cos t, sin t)), least at t0.
         float h = equation.w - dot(equation.xyz, P), height = abs(h);
         vec2 normal = vec2(dot(equation.xyz, V), dot(equation.xyz, across)) * (h < 0.0 ? -1.0 : 1.0);
@@ -63,7 +66,7 @@ void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, 
         float from = max(t0 - half_angle, n - 0.5 * PI), to = min(t0 + half_angle, n + 0.5 * PI);
         float width = (to - from) / float(CHORDS);
         // A rasteriser on the CPU saves turns of a loop, not branches.
-        int chords = width > 0.0 && height > ROOM * P.z && !(uneven && h > 0.0) ? CHORDS : 0;
+        int chords = width > 0.0 && height > least && !(uneven && h > 0.0) ? CHORDS : 0;
         bool goes_right = allows(right, equation, room), goes_left = allows(left, equation, room);
 #ifdef BOUNCE
         vec3 sent = h < 0.0 ? imageLoad(planes_image, ivec2(PLANE_LIGHT, i)).rgb : vec3(0.0); // from the side that the camera sees

@@ -17,7 +17,9 @@ enum { LEAST_FOR_CHANGE = 4 };
 // twice as many steps as slices.
 void arc_grid(int samples, int *slices, int *steps)
 {
-    int s = (int)lround(fmin(samples / 32.0, sqrt(samples / 4.0)));
+    double most = fmin(samples / 32.0, sqrt(samples / 4.0));
+    int s = (int)lround(most);
+    if (s >= LEAST_FOR_CHANGE) s = 2 * (int)lround(0.5 * most); // two halves
     *slices = s > 1 ? s : 1;
     *steps = samples / (2 * *slices) > 1 ? samples / (2 * *slices) : 1;
 }
@@ -140,7 +142,7 @@ bool arc_make_inputs(pass_context *c, error *e) { return make_planes(c, e) && ma
 // Bent normals after rounds have found the occlusion: as many slices, whose own occlusion nobody needs.
 static bool run_bent(pass_context *c, const char *defines, error *e)
 {
-    arc_params params = arc_params_of(c);
+    arc_params params = arc_params_of_grid(c, ROUND_SLICES, ROUND_STEPS);
     char with_bent[64], buf[128];
     gpu_image unused = {0};
     snprintf(with_bent, sizeof with_bent, "%sBENT 1\n", defines);

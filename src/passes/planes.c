@@ -182,7 +182,7 @@ static int fill_cells(const finder *f, plane *p)
         const surface *s = &f->s[i];
         vec3 hit;
         bool on = holds(f, p, s);
-        if (!meets(f, p, s, &hit) || (!on && hit.z > s->p.z * (1.0 - 2.0 * f->distance))) continue;
+        if (!meets(f, p, s, &hit) || (!on && hit.z > s->p.z - 2.0 * f->distance * s->size)) continue;
         int x = cell_of(p, 0, hit), y = cell_of(p, 1, hit);
         if (x < 0 || y < 0) continue;
         balance[y][x] += on ? 1 : -1;
@@ -221,7 +221,9 @@ bool planes_find(const gbuffer *gb, plane_set *out, error *e)
         n = find_plane(&f, SMALLEST, &p);
         if (n > 0 && fill_cells(&f, &p) <= CONTRADICTED * n) out->planes[out->count++] = p;
     }
-    // What is left may be ground that no plane holds.
+    // What they leave may be ground that no plane holds; what refused ones have taken belongs to it.
+    f.count = f.total;
+    for (int i = 0; i < out->count; i++) take(&f, &out->planes[i]);
     f.distance = UNEVEN_DISTANCE;
     f.cosine = UNEVEN_COSINE;
     n = find_plane(&f, UNEVEN_SMALLEST, &p);

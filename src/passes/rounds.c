@@ -178,7 +178,7 @@ bool arc_run_rounds(pass_context *c, const char *defines, error *e)
     }
     ok = ok && conclude(&w, e);
     c->rounds.count = round;
-    count_samples(&c->rounds);
+    if (ok) count_samples(&c->rounds);
     c->tiles = w.whole;
     c->timing_count = timings;
     pass_clock_stop(c, clock);

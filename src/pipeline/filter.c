@@ -133,7 +133,8 @@ static void take_rounds(const job *j, frame_result *r, const pass_rounds *rounds
     log_info(j->log, "--error %g: %.0f samples a pixel in the mean, %d rounds", r->set.error, r->mean_samples, r->rounds);
     if (r->tiles_above > 0)
         log_warn(j->log, "error",
-                 "%d of %d tiles have an estimated standard error above %g after %d samples; --samples allows more",
+                 "%d of %d tiles of a frame have an estimated standard error above %g after %d samples; --samples allows more; "
+                 "the report says so of each frame",
                  r->tiles_above, rounds->tiles.occupied_count, r->set.error, rounds->most_samples);
 }
 
@@ -169,7 +170,7 @@ bool filter_frame(job *j, frame_result *r, error *e)
     memcpy(r->uploads, c.uploads, sizeof r->uploads);
     r->upload_count = c.upload_count;
     r->planes = c.planes;
-    take_rounds(j, r, &c.rounds);
+    if (ok) take_rounds(j, r, &c.rounds);
     r->tile_size = c.tiles.size, r->tiles = c.tiles.columns * c.tiles.rows, r->tiles_occupied = c.tiles.occupied_count;
     pass_end(&c);
     return ok;

@@ -330,7 +330,7 @@ static pass_settings settings_of(const job *j, const frame_result *r, double rad
         .planes = !o->no_planes,
         .half =
             (o->half < 0 ? o->quality < 0 : o->half) && !r->plan.from_sh && o->error <= 0.0, // stored layers are whole already
-        .samples = o->samples > 0 && o->error <= 0.0 ? o->samples : samples_at(m, o->quality),
+        .samples = o->samples > 0 && o->error <= 0.0 ? o->samples : samples_at(m, o->error > 0.0 ? 0 : o->quality),
         .error = o->error,
         .most_samples = o->samples > 0 ? o->samples : ROUNDS_MOST_SAMPLES,
         .angle_bias = o->angle_bias,

@@ -140,7 +140,7 @@ double report_off_frame_share(const frame_result *r)
 static json_object *planes_of(const frame_result *r)
 {
     json_object *list = json_object_new_array();
-    for (int i = 0; i < r->planes.count; i++) {
+    for (int i = 0; i < r->planes.count + r->planes.uneven; i++) {
         const plane *p = &r->planes.planes[i];
         json_object *o = json_object_new_object(), *normal = json_object_new_array();
         json_object_array_add(normal, json_object_new_double(p->normal.x));
@@ -149,13 +149,14 @@ static json_object *planes_of(const frame_result *r)
         json_put(o, "normal", normal);
         json_put_number(o, "offset", p->offset);
         json_put_number(o, "share", p->share);
+        json_put(o, "uneven", json_object_new_boolean(i == r->planes.count));
         json_object_array_add(list, o);
     }
     return list;
 }
 
 // Of --error.
-static json_object *rounds_of(const frame_result *r)
+json_object *report_rounds(const frame_result *r)
 {
     json_object *o = json_object_new_object();
     json_put_number(o, "error", r->set.error);
@@ -183,8 +184,8 @@ static json_object *report_of(const job *j, const frame_result *r, const char *o
     json_put(o, "evidence", evidence);
     json_put(o, "camera", camera_of(r));
     json_put_text(o, "method", r->plan.method->name);
-    if (r->rounds == 0) json_put(o, "samples", json_object_new_int(r->set.samples));
-    if (r->rounds > 0) json_put(o, "rounds", rounds_of(r));
+    if (r->set.error <= 0.0) json_put(o, "samples", json_object_new_int(r->set.samples));
+    if (r->set.error > 0.0) json_put(o, "rounds", report_rounds(r));
     json_put_number(o, "radius", r->set.radius);
     json_put_number(o, "thickness", r->set.thickness);
     json_put_number(o, "valid_share", pixels > 0 ? (double)r->gb.valid / pixels : 0.0);

@@ -17,4 +17,4 @@ for n in 1 3; do
     LP_NUM_THREADS=$n "$SSDO" -q samples/still.exr -o "$dir/rounds$n.exr" --env samples/sky_soft.exr --threads $n --error 0.02 || exit 1
 done
 cmp "$dir/rounds1.exr" "$dir/rounds3.exr" || { echo "FAILED: --error differs"; exit 1; }
-echo "figure: $(ls "$dir" | wc -l) runs, the same bytes"
+echo "figure: $(ls "$dir" | grep -vc rounds) runs, the same bytes"

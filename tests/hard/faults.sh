@@ -190,4 +190,19 @@ while [ $row -lt $enough ]; do
     memory=$((memory + 1)) n=$((n + step))
     [ $n -gt 20000 ] && die "more than 20000 allocations"
 done
+# Rounds keep more: each of their allocations.
+row=0 n=1
+[ "${SSDO_HARD-}" = whole ] && step=1 || step=7
+"$SSDO" $args --layers occlusion,error --error 0.05 -o "$dir/two.exr" 2>"$dir/err" || die "the clean run of rounds"
+while [ $row -lt $enough ]; do
+    rm -f "$dir/out.exr"
+    SSDO_FAIL_ALLOC=$n "$SSDO" $args --layers occlusion,error --error 0.05 -o "$dir/out.exr" 2>"$dir/err" >/dev/null
+    code=$?
+    n=$((n + step))
+    [ $code = 0 ] && cmp -s "$dir/out.exr" "$dir/two.exr" && row=$((row + 1)) && continue
+    row=0
+    failed 6 "memory" "allocation $((n - step)) of rounds"
+    [ ! -e "$dir/out.exr" ] || die "allocation $((n - step)) of rounds: something is left"
+    memory=$((memory + 1))
+done
 echo "figure: $full full disks, $targets faults of target and GL, $memory failed allocations ($((spared - row)) more did not matter): 0 partial outputs, 0 lost inputs"

@@ -108,13 +108,16 @@ static void rounds_stop(void **state)
         before = out.mean_samples;
         rig_free_result(&out);
     }
-    pass_settings set = settings(s->ao_distance, 0.01);
-    set.most_samples = ROUNDS_LEAST_SAMPLES;
-    run(&r, &f.gb, &set, LAYERS, &out);
-    assert_int_equal(out.rounds, 1);
-    assert_true(out.mean_samples == ROUNDS_LEAST_SAMPLES);
-    assert_true(out.tiles_above > 0);
-    rig_free_result(&out);
+    // 64 samples, then 192, then 448 if the cap allows.
+    const int caps[][2] = {{ROUNDS_LEAST_SAMPLES, 1}, {191, 1}, {192, 2}, {447, 2}, {448, 3}};
+    for (size_t i = 0; i < sizeof caps / sizeof *caps; i++) {
+        pass_settings set = settings(s->ao_distance, 0.001);
+        set.most_samples = caps[i][0];
+        run(&r, &f.gb, &set, LAYERS, &out);
+        assert_int_equal(out.rounds, caps[i][1]);
+        assert_true(out.mean_samples <= caps[i][0] && out.tiles_above > 0);
+        rig_free_result(&out);
+    }
     frame_free(&f);
     rig_close(&r);
 }
@@ -155,17 +158,19 @@ static void dispatch_does_not_matter(void **state)
     frame_result f, out[2];
     int n = samples_list("samples", list, SAMPLE_MAX, &e);
     const sample *s = sample_named(list, n, "box");
-    must(rig_open(&r, NULL, &e), &e);
+    must(rig_open(&r, &(env_options){.path = "samples/sky_soft.exr", .up_z = true, .scale = 1.0}, &e), &e);
     read_sample(&r, s, &f);
     pass_settings set = settings(s->ao_distance, 0.02);
     for (int i = 0; i < 2; i++) {
         if (i == 1) setenv("SSDO_TILE", "48", 1);
-        run(&r, &f.gb, &set, LAYERS, &out[i]);
+        run(&r, &f.gb, &set, LAYERS | 1 << LAYER_RADIANCE | 1 << LAYER_BENT, &out[i]);
     }
     unsetenv("SSDO_TILE");
     size_t bytes = (size_t)f.gb.width * (size_t)f.gb.height * sizeof(float);
     assert_memory_equal(out[0].layers[LAYER_OCCLUSION], out[1].layers[LAYER_OCCLUSION], bytes);
     assert_memory_equal(out[0].layers[LAYER_ERROR], out[1].layers[LAYER_ERROR], bytes);
+    assert_memory_equal(out[0].layers[LAYER_RADIANCE], out[1].layers[LAYER_RADIANCE], 3 * bytes);
+    assert_memory_equal(out[0].layers[LAYER_BENT], out[1].layers[LAYER_BENT], 3 * bytes);
     for (int i = 0; i < 2; i++) rig_free_result(&out[i]);
     frame_free(&f);
     rig_close(&r);
