@@ -101,10 +101,11 @@ static uint8_t share(float v) { return (uint8_t)lrintf(255.0f * fminf(1.0f, fmax
 static bool is_light(layer_id l) { return layer_table[l].channels[1] && !is_signed(l) && l != LAYER_DEPTHMASK; }
 
 // What is no light, as a code.
-static uint8_t shade(layer_id l, const dot *d, int k)
+static uint8_t shade(const frame_result *r, layer_id l, const dot *d, int k)
 {
     if (is_signed(l)) return share(0.5f * (d->v[k] + 1.0f));
     if (l == LAYER_DEPTHMASK) return share(d->v[0] + 1.0f); // its 0 is shown white
+    if (l == LAYER_ERROR) return share(d->v[0] / (2.0f * (float)r->set.error));
     return share(d->v[0]);
 }
 
@@ -149,7 +150,8 @@ static bool draw_layer(sheet *s, const options *o, const frame_result *r, layer_
         bool glow = d.open >= 1.0f && d.v[0] + d.v[1] + d.v[2] > 0.0f; // light without alpha is shown whole
         open[i] = !any ? 1.0f : glow ? 0.0f : d.open;
         float part = open[i] < 1.0f ? 1.0f - open[i] : 1.0f;
-        for (int k = 0; k < 3; k++) rgb[3 * i + (size_t)k] = is_light(l) ? gain * d.v[k] / part : (float)shade(l, &d, k) / 255.0f;
+        for (int k = 0; k < 3; k++)
+            rgb[3 * i + (size_t)k] = is_light(l) ? gain * d.v[k] / part : (float)shade(r, l, &d, k) / 255.0f;
     }
     bool ok = !is_light(l) || develop(o, r, rgb, n, e);
     // The checkerboard goes through no view: it looks the same everywhere, also in the legend.
