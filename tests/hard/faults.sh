@@ -193,10 +193,10 @@ done
 # Rounds keep more: each of their allocations.
 row=0 n=1
 [ "${SSDO_HARD-}" = whole ] && step=1 || step=7
-"$SSDO" $args --layers occlusion,error --error 0.05 -o "$dir/two.exr" 2>"$dir/err" || die "the clean run of rounds"
+"$SSDO" $args --layers occlusion,error --error 0.05 --samples 64 -o "$dir/two.exr" 2>"$dir/err" || die "the clean run of rounds"
 while [ $row -lt $enough ]; do
     rm -f "$dir/out.exr"
-    SSDO_FAIL_ALLOC=$n "$SSDO" $args --layers occlusion,error --error 0.05 -o "$dir/out.exr" 2>"$dir/err" >/dev/null
+    SSDO_FAIL_ALLOC=$n "$SSDO" $args --layers occlusion,error --error 0.05 --samples 64 -o "$dir/out.exr" 2>"$dir/err" >/dev/null
     code=$?
     n=$((n + step))
     [ $code = 0 ] && cmp -s "$dir/out.exr" "$dir/two.exr" && row=$((row + 1)) && continue
