@@ -3,6 +3,7 @@
 // A filter that knows the noise it is to remove. From the edge-aware means (include/bilateral.glsl) over a window of the estimate m,
 // of its `change` c when the other half of the slices came in, and of their squares it takes
 //   S = mean(m^2) - mean(m)^2   the variance in the window, of noise and of the picture
+//   v = mean(c^2)              the variance of the noise: exactly that if the halves are independent, less if they are stratified
 //   g = max(0, S - v) / S       the share of the picture in it
 //   result = mean(m) + g (m - mean(m))
 // which errs least of all mixtures of m and mean(m) (the filter of Wiener; Lee 1980). Where sampling has converged v is nothing and
@@ -62,7 +63,7 @@ void main() {
     moments_out = mean;
 #else
     float m = imageLoad(estimate_image, p).r;
-    float S = max(0.0, mean.z - mean.x * mean.x), seen = max(0.0, S - mean.w);
+    float S = max(0.0, mean.z - mean.x * mean.x), v = mean.w, seen = max(0.0, S - v);
     float g = S > 0.0 ? seen / S : 0.0;
     result_out = depth == 0.0 ? m : mix(mean.x, m, g);
 #ifdef ERRORS

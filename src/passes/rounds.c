@@ -28,7 +28,7 @@ typedef struct work {
     gpu_tiles whole; // the context's own, put back at the end
     gpu_image sums, moments, result, square;
     gpu_buffer totals;
-    float (*read)[2];
+    float (*read)[2];              // of each tile: sum of the squared errors, surfaces
     unsigned char *active, *grown; // tiles
 } work;
 
@@ -44,8 +44,9 @@ static void go_to(work *w, unsigned char *mask)
 static bool march(work *w, const char *defines, int round, error *e)
 {
     pass_context *c = w->c;
-    arc_params params = arc_params_of_grid(c, round == 0 ? ROUND_SLICES : arc_round_slices(round - 1), arc_round_steps(round));
-    params.before = round == 0 ? 0 : arc_round_slices(round - 1);
+    int before = round == 0 ? 0 : arc_round_slices(round - 1);
+    arc_params params = arc_params_of_grid(c, arc_round_slices(round) - before, arc_round_steps(round));
+    params.before = before;
     char with[96], buf[160];
     snprintf(with, sizeof with, "%sCHANGE 1\nROUND 1\n", defines);
     const pass_binding bindings[] = {{2, &c->occlusion, GL_WRITE_ONLY},
@@ -78,7 +79,7 @@ static bool denoise(work *w, error *e)
     return pass_denoise_down(c, &d, e);
 }
 
-// Mean squared errors of the tiles.
+// Squared errors of the tiles.
 static bool measure(work *w, error *e)
 {
     pass_context *c = w->c;

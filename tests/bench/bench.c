@@ -280,14 +280,10 @@ int main(int argc, char **argv)
 {
     arguments a;
     error e = {0};
-    char text[1600];
     setlocale(LC_NUMERIC, "C");
     if (!parse(argc, argv, &a)) {
         fprintf(stderr, "bench: unknown option or a number of rounds outside 1..%d\n", BENCH_ROUNDS);
         return ERR_USAGE;
     }
-    if (bench(&a, &e)) return 0;
-    err_format(&e, text, sizeof text);
-    fprintf(stderr, "bench: %s\n", text);
-    return (int)e.code;
+    return bench_end("bench", bench(&a, &e), &e);
 }

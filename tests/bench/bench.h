@@ -39,6 +39,12 @@ typedef struct bench_scene {
 int bench_samples(const char *dir, const char *meshes, rig *r, bench_scene *list, int max, error *e);
 int bench_generated(const char *sky, const char *cache, rig *r, bench_scene *list, int max, error *e);
 void bench_scene_free(bench_scene *b);
+// For programs that need no more than a folder's rendered samples: opens the rig and loads them, BENCH_SCENES at most; returns
+// how many, 0 with the error filled. bench_close frees both.
+int bench_open(const char *dir, rig *r, bench_scene *list, error *e);
+void bench_close(rig *r, bench_scene *list, int count);
+// The exit code of a program; says what went wrong.
+int bench_end(const char *program, bool ok, const error *e);
 // Loads a sky into the scene and onto the GPU.
 bool bench_light(bench_scene *b, const char *path, double rotate, rig *r, error *e);
 // The middle third, if DIR/proxies/NAME.json says what stands beside it (middle.c).

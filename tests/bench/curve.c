@@ -32,8 +32,7 @@ static bool run(error *e)
     static rig r;
     static bench_scene scenes[BENCH_SCENES];
     const method *m = &methods[METHOD_DEFAULT];
-    if (!rig_open(&r, NULL, e)) return false;
-    int n = bench_samples("samples", NULL, &r, scenes, BENCH_SCENES, e);
+    int n = bench_open("samples", &r, scenes, e);
     bool ok = n > 0;
     for (size_t i = 0; ok && i < 2 * (sizeof budgets / sizeof *budgets); i++) {
         bench_row row = {.kind = ROW_METHOD, .m = m, .samples = budgets[i / 2], .blur = m->blur, .half = i % 2 == 0};
@@ -44,17 +43,12 @@ static bool run(error *e)
             printf("%d\t%s\t%.3f\t%.3f\t%.3f\n", row.samples, row.half ? "half" : "full", sqrt(all.occlusion / n),
                    sqrt(all.radiance / n), sqrt(all.indirect / n));
     }
-    for (int i = 0; i < n; i++) bench_scene_free(&scenes[i]);
-    rig_close(&r);
+    bench_close(&r, scenes, n);
     return ok;
 }
 
 int main(void)
 {
     error e = {0};
-    char text[1600];
-    if (run(&e)) return 0;
-    err_format(&e, text, sizeof text);
-    fprintf(stderr, "curve: %s\n", text);
-    return (int)e.code;
+    return bench_end("curve", run(&e), &e);
 }

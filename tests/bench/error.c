@@ -84,26 +84,20 @@ static bool run(const char *dir, error *e)
     static rig r;
     static bench_scene scenes[BENCH_SCENES];
     int tiles = 0, within = 0;
-    if (!rig_open(&r, NULL, e)) return false;
     r.options.report = "timed";
-    int n = bench_samples(dir, NULL, &r, scenes, BENCH_SCENES, e);
+    int n = bench_open(dir, &r, scenes, e);
     bool ok = n > 0;
     printf("| scene | samples | estimated error | true error | tiles within a factor of 2 | largest error of a tile | "
            "CPU time over that of the fixed budget with the same largest error | with the same error |\n"
            "| --- | --- | --- | --- | --- | --- | --- | --- |\n");
     for (int i = 0; ok && i < n; i++) ok = add_scene(&r, &scenes[i], &tiles, &within, e);
     if (ok) printf("\nOf all tiles %.0f %% have a true error within a factor of 2 of the estimate.\n", 100.0 * within / tiles);
-    for (int i = 0; i < n; i++) bench_scene_free(&scenes[i]);
-    rig_close(&r);
+    bench_close(&r, scenes, n);
     return ok;
 }
 
 int main(int argc, char **argv)
 {
     error e = {0};
-    char text[1600];
-    if (run(argc > 1 ? argv[1] : "samples", &e)) return 0;
-    err_format(&e, text, sizeof text);
-    fprintf(stderr, "error: %s\n", text);
-    return (int)e.code;
+    return bench_end("error", run(argc > 1 ? argv[1] : "samples", &e), &e);
 }

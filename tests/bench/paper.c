@@ -63,8 +63,7 @@ static bool compare(const char *name, error *e)
 {
     static rig r;
     static bench_scene scenes[BENCH_SCENES];
-    if (!rig_open(&r, NULL, e)) return false;
-    int n = bench_samples("samples", NULL, &r, scenes, BENCH_SCENES, e), at = 0;
+    int n = bench_open("samples", &r, scenes, e), at = 0;
     for (int i = 0; i < n; i++)
         if (strcmp(scenes[i].s.name, name) == 0) at = i;
     kind kinds[] = {
@@ -91,17 +90,12 @@ static bool compare(const char *name, error *e)
         printf("| %s | %d | %.0f | %+.0f %% |\n", kinds[i].name, kinds[i].samples, bench_median(kinds[i].ms, ROUNDS),
                percent_over(&kinds[i], &kinds[i / 3 * 3]));
     if (ok) printf("\nThe paper, net of the base pass: direct light +3 to +11 %%, with one bounce +70 to +100 %%.\n");
-    for (int i = 0; i < n; i++) bench_scene_free(&scenes[i]);
-    rig_close(&r);
+    bench_close(&r, scenes, n);
     return ok;
 }
 
 int main(int argc, char **argv)
 {
     error e = {0};
-    char text[1600];
-    if (compare(argc > 1 ? argv[1] : "still", &e)) return 0;
-    err_format(&e, text, sizeof text);
-    fprintf(stderr, "paper: %s\n", text);
-    return (int)e.code;
+    return bench_end("paper", compare(argc > 1 ? argv[1] : "still", &e), &e);
 }

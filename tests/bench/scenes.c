@@ -76,3 +76,23 @@ void bench_scene_free(bench_scene *b)
     free(b->pixels);
     *b = (bench_scene){0};
 }
+
+int bench_open(const char *dir, rig *r, bench_scene *list, error *e)
+{
+    return rig_open(r, NULL, e) ? bench_samples(dir, NULL, r, list, BENCH_SCENES, e) : 0;
+}
+
+void bench_close(rig *r, bench_scene *list, int count)
+{
+    for (int i = 0; i < count; i++) bench_scene_free(&list[i]);
+    rig_close(r);
+}
+
+int bench_end(const char *program, bool ok, const error *e)
+{
+    char text[1600];
+    if (ok) return 0;
+    err_format(e, text, sizeof text);
+    fprintf(stderr, "%s: %s\n", program, text);
+    return (int)e->code;
+}

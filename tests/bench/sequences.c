@@ -97,8 +97,7 @@ static bool run(const char *dir, int seeds, const char *word, error *e)
 {
     static rig r;
     static bench_scene scenes[BENCH_SCENES];
-    if (!rig_open(&r, NULL, e)) return false;
-    int n = bench_samples(dir, NULL, &r, scenes, BENCH_SCENES, e);
+    int n = bench_open(dir, &r, scenes, e);
     bool ok = n > 0;
     size_t count = sizeof budgets / sizeof *budgets;
     printf("|  |");
@@ -108,22 +107,17 @@ static bool run(const char *dir, int seeds, const char *word, error *e)
     printf("\n");
     for (size_t v = 0; ok && v < sizeof variants / sizeof *variants; v++)
         if (strstr(variants[v].name, word)) ok = run_variant(&r, scenes, n, v, seeds, e);
-    for (int i = 0; i < n; i++) bench_scene_free(&scenes[i]);
-    rig_close(&r);
+    bench_close(&r, scenes, n);
     return ok;
 }
 
 int main(int argc, char **argv)
 {
     error e = {0};
-    char text[1600];
     int seeds = argc > 2 ? atoi(argv[2]) : 0;
     if (seeds < 1 || seeds > SEEDS_MAX) {
         fprintf(stderr, "sequences: SAMPLES SEEDS [WORD], of 1 to %d seeds\n", SEEDS_MAX);
         return 2;
     }
-    if (run(argv[1], seeds, argc > 3 ? argv[3] : "", &e)) return 0;
-    err_format(&e, text, sizeof text);
-    fprintf(stderr, "sequences: %s\n", text);
-    return (int)e.code;
+    return bench_end("sequences", run(argv[1], seeds, argc > 3 ? argv[3] : "", &e), &e);
 }

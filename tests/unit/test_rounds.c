@@ -85,22 +85,34 @@ static const sample *sample_named(const sample *list, int n, const char *name)
     return NULL;
 }
 
+// The rig, with a light or NULL, and a sample's surfaces. Returns the radius of the sample's truth.
+static double open_sample(rig *r, const env_options *env, const char *name, frame_result *f)
+{
+    error e = {0};
+    sample list[SAMPLE_MAX];
+    const sample *s = sample_named(list, samples_list("samples", list, SAMPLE_MAX, &e), name);
+    must(rig_open(r, env, &e), &e);
+    read_sample(r, s, f);
+    return s->ao_distance;
+}
+
+static void close_sample(rig *r, frame_result *f)
+{
+    frame_free(f);
+    rig_close(r);
+}
+
 // A smaller error takes more samples, most samples are not exceeded, and tiles that need more are counted.
 static void rounds_stop(void **state)
 {
     (void)state;
     const double limits[] = {0.05, 0.02, 0.01};
     rig r;
-    error e = {0};
-    sample list[SAMPLE_MAX];
     frame_result f, out;
-    int n = samples_list("samples", list, SAMPLE_MAX, &e);
-    const sample *s = sample_named(list, n, "still");
-    must(rig_open(&r, NULL, &e), &e);
-    read_sample(&r, s, &f);
+    double radius = open_sample(&r, NULL, "still", &f);
     double before = 0.0;
     for (int i = 0; i < 3; i++) {
-        pass_settings set = settings(s->ao_distance, limits[i]);
+        pass_settings set = settings(radius, limits[i]);
         run(&r, &f.gb, &set, LAYERS, &out);
         printf("figure: still at %.2f: %.0f samples in %d rounds\n", limits[i], out.mean_samples, out.rounds);
         assert_true(out.mean_samples > before);
@@ -111,15 +123,14 @@ static void rounds_stop(void **state)
     // 64 samples, then 192, then 448 if the cap allows.
     const int caps[][2] = {{ROUNDS_LEAST_SAMPLES, 1}, {191, 1}, {192, 2}, {447, 2}, {448, 3}};
     for (size_t i = 0; i < sizeof caps / sizeof *caps; i++) {
-        pass_settings set = settings(s->ao_distance, 0.001);
+        pass_settings set = settings(radius, 0.001);
         set.most_samples = caps[i][0];
         run(&r, &f.gb, &set, LAYERS, &out);
         assert_int_equal(out.rounds, caps[i][1]);
         assert_true(out.mean_samples <= caps[i][0] && out.tiles_above > 0);
         rig_free_result(&out);
     }
-    frame_free(&f);
-    rig_close(&r);
+    close_sample(&r, &f);
 }
 
 // An empty plane is exact after the first round, says so, and gives the radiance of an unblocked sky.
@@ -153,14 +164,9 @@ static void dispatch_does_not_matter(void **state)
 {
     (void)state;
     rig r;
-    error e = {0};
-    sample list[SAMPLE_MAX];
     frame_result f, out[2];
-    int n = samples_list("samples", list, SAMPLE_MAX, &e);
-    const sample *s = sample_named(list, n, "box");
-    must(rig_open(&r, &(env_options){.path = "samples/sky_soft.exr", .up_z = true, .scale = 1.0}, &e), &e);
-    read_sample(&r, s, &f);
-    pass_settings set = settings(s->ao_distance, 0.02);
+    double radius = open_sample(&r, &(env_options){.path = "samples/sky_soft.exr", .up_z = true, .scale = 1.0}, "box", &f);
+    pass_settings set = settings(radius, 0.02);
     for (int i = 0; i < 2; i++) {
         if (i == 1) setenv("SSDO_TILE", "48", 1);
         run(&r, &f.gb, &set, LAYERS | 1 << LAYER_RADIANCE | 1 << LAYER_BENT, &out[i]);
@@ -172,8 +178,7 @@ static void dispatch_does_not_matter(void **state)
     assert_memory_equal(out[0].layers[LAYER_RADIANCE], out[1].layers[LAYER_RADIANCE], 3 * bytes);
     assert_memory_equal(out[0].layers[LAYER_BENT], out[1].layers[LAYER_BENT], 3 * bytes);
     for (int i = 0; i < 2; i++) rig_free_result(&out[i]);
-    frame_free(&f);
-    rig_close(&r);
+    close_sample(&r, &f);
 }
 
 // Where sampling has converged the filter leaves the picture alone: with 1024 samples it errs less than no filter does, and where
@@ -186,14 +191,10 @@ static void the_filter_knows_the_noise(void **state)
         double share; // of the error without a filter that may be left
     } cases[] = {{1024, 1.0}, {128, 0.75}};
     rig r;
-    error e = {0};
-    sample list[SAMPLE_MAX];
     frame_result f, out;
-    int n = samples_list("samples", list, SAMPLE_MAX, &e);
-    const sample *s = sample_named(list, n, "still");
-    must(rig_open(&r, NULL, &e), &e);
-    read_sample(&r, s, &f);
-    pass_settings set = settings(s->ao_distance, 0.0);
+    double radius = open_sample(&r, NULL, "still", &f);
+    error e = {0};
+    pass_settings set = settings(radius, 0.0);
     float *limit = tile_limit(&r, &f.gb, method_find("arc"), set, 4096, 1, &e);
     assert_non_null(limit);
     for (int i = 0; i < 2; i++) {
@@ -210,8 +211,7 @@ static void the_filter_knows_the_noise(void **state)
         assert_true(left[1] < cases[i].share * left[0]);
     }
     free(limit);
-    frame_free(&f);
-    rig_close(&r);
+    close_sample(&r, &f);
 }
 
 int main(void)
