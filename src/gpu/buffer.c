@@ -3,7 +3,6 @@
 bool gpu_buffer_make(gpu *g, gpu_buffer *buffer, const void *data, size_t size, const char *what, error *e)
 {
     GLint64 most = 0;
-    (void)g;
     *buffer = (gpu_buffer){.size = size};
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
     if (size > (size_t)most)
@@ -11,6 +10,7 @@ bool gpu_buffer_make(gpu *g, gpu_buffer *buffer, const void *data, size_t size, 
                        (size_t)most >> 20);
     glCreateBuffers(1, &buffer->id);
     glNamedBufferData(buffer->id, (GLsizeiptr)(size ? size : 4), data, GL_DYNAMIC_DRAW);
+    if (data) g->counts.uploads++, g->counts.bytes_up += (long long)size;
     GLenum code = glGetError();
     if (code == GL_NO_ERROR) return true;
     gpu_buffer_free(buffer);
@@ -24,14 +24,16 @@ void gpu_buffer_free(gpu_buffer *buffer)
     *buffer = (gpu_buffer){0};
 }
 
-void gpu_buffer_write(gpu_buffer *buffer, const void *data, size_t size)
+void gpu_buffer_write(gpu *g, gpu_buffer *buffer, const void *data, size_t size)
 {
+    g->counts.uploads++, g->counts.bytes_up += (long long)size;
     glNamedBufferSubData(buffer->id, 0, (GLsizeiptr)size, data);
 }
 
-void gpu_buffer_read(const gpu_buffer *buffer, void *data, size_t size)
+void gpu_buffer_read(gpu *g, const gpu_buffer *buffer, void *data, size_t size)
 {
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    g->counts.read_backs++, g->counts.bytes_down += (long long)size;
+    gpu_barrier(g, GL_BUFFER_UPDATE_BARRIER_BIT);
     glGetNamedBufferSubData(buffer->id, 0, (GLsizeiptr)size, data);
 }
 

@@ -14,6 +14,13 @@
 
 typedef struct gpu_program_entry gpu_program_entry;
 
+// What was asked of GL. Uniform blocks, of a few hundred bytes, are not counted.
+typedef struct gpu_counts {
+    long long dispatches, draws, barriers;
+    long long uploads, read_backs; // calls that move pictures or buffers
+    long long bytes_up, bytes_down;
+} gpu_counts;
+
 typedef struct gpu {
     void *display, *context; // EGLDisplay, EGLContext
     char renderer[160], version[96], platform[48];
@@ -25,6 +32,7 @@ typedef struct gpu {
     gpu_program_entry *programs;
     int program_count;
     int programs_compiled, programs_cached; // of program_count: made from source, or taken from the cache of an earlier run
+    gpu_counts counts;                      // since the context was opened
 } gpu;
 
 // One EGL device as --list-devices shows it.
@@ -66,10 +74,10 @@ typedef struct gpu_image {
 bool gpu_image_make(gpu *g, gpu_image *image, GLenum format, int width, int height, int levels, error *e);
 void gpu_image_free(gpu_image *image);
 // Whole level from/to tightly packed floats with as many components as the format has.
-void gpu_image_upload(gpu_image *image, int level, const float *pixels);
-void gpu_image_download(const gpu_image *image, float *pixels);
+void gpu_image_upload(gpu *g, gpu_image *image, int level, const float *pixels);
+void gpu_image_download(gpu *g, const gpu_image *image, float *pixels);
 // Rows y .. y + rows - 1, of at most 1 GiB.
-void gpu_image_download_rows(const gpu_image *image, int y, int rows, float *pixels);
+void gpu_image_download_rows(gpu *g, const gpu_image *image, int y, int rows, float *pixels);
 void gpu_image_clear(gpu_image *image, const float value[4]);
 // Binds as image unit `unit` for reading, writing or both. An image with id 0 is skipped.
 void gpu_bind_image(int unit, const gpu_image *image, GLenum access);
@@ -90,10 +98,18 @@ typedef struct gpu_buffer {
 // `data` may be NULL: undefined contents. `what` names it in messages ("the mesh").
 bool gpu_buffer_make(gpu *g, gpu_buffer *buffer, const void *data, size_t size, const char *what, error *e);
 void gpu_buffer_free(gpu_buffer *buffer);
-void gpu_buffer_write(gpu_buffer *buffer, const void *data, size_t size); // from its beginning
-void gpu_buffer_read(const gpu_buffer *buffer, void *data, size_t size);  // waits for the shaders that write it
+void gpu_buffer_write(gpu *g, gpu_buffer *buffer, const void *data, size_t size); // from its beginning
+void gpu_buffer_read(gpu *g, const gpu_buffer *buffer, void *data, size_t size);  // waits for the shaders that write it
 // Binds as shader storage. A buffer with id 0 is skipped.
 void gpu_bind_buffer(int binding, const gpu_buffer *buffer);
+
+// What was counted since `before`, a copy of g->counts.
+gpu_counts gpu_counts_since(const gpu *g, const gpu_counts *before);
+
+// Runs the program in use over so many work groups, and orders what follows after its stores (glMemoryBarrier's bits). Every
+// dispatch and barrier goes through these, so that they are counted.
+void gpu_dispatch(gpu *g, unsigned x, unsigned y, unsigned z);
+void gpu_barrier(gpu *g, GLbitfield bits);
 
 // Waits for all work, and turns what GL has to say (errors, lost context, out of memory) into an error.
 bool gpu_finish(gpu *g, const char *what, error *e);
@@ -111,8 +127,10 @@ typedef struct gpu_tiles {
 
 enum { GPU_GROUP = 8, GPU_TILE = 64 }; // a work group is GPU_GROUP^2 pixels
 
-// GPU_TILE, or for tests what the environment variable SSDO_TILE says (1 .. 65536 pixels).
-int gpu_tile_size(void);
+// A side that suits the device: GPU_TILE for a software renderer, which gains from tiles left out and where a dispatch costs
+// nothing; for hardware one that keeps a dispatch of so many samples a pixel short. For tests the environment variable SSDO_TILE
+// says it (1 .. 65536 pixels).
+int gpu_tile_size(const gpu *g, int samples);
 
 // A tile is occupied if any of its pixels has mask[i] != 0 or (coverage given) coverage[i] > 0.
 bool gpu_tiles_make(gpu_tiles *t, int width, int height, int size, const float *mask, const float *coverage, error *e);
@@ -122,7 +140,7 @@ void gpu_tiles_free(gpu_tiles *t);
 
 // Runs the program in use over every occupied tile (all tiles if `everywhere`), the tile's rectangle in uniform location 0
 // (ivec4: x0 y0 x1 y1, end exclusive), with the memory barriers that image reads of the next pass need.
-void gpu_dispatch_tiles(const gpu_tiles *t, bool everywhere);
+void gpu_dispatch_tiles(gpu *g, const gpu_tiles *t, bool everywhere);
 
 // The same for a .frag program: draws the tiles into the targets, all of the tiles' size; target i is the shader's output at
 // location i. For passes that do little for each pixel: a software renderer stores what is drawn four times faster than what a

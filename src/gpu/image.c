@@ -48,32 +48,39 @@ void gpu_image_free(gpu_image *image)
     *image = (gpu_image){0};
 }
 
-void gpu_image_upload(gpu_image *image, int level, const float *pixels)
-{
-    int w = image->width >> level, h = image->height >> level;
-    glTextureSubImage2D(image->id, level, 0, 0, w > 0 ? w : 1, h > 0 ? h : 1, transfer_format(image->format), GL_FLOAT, pixels);
-}
-
-static size_t row_bytes(const gpu_image *image)
+static size_t pixel_bytes(const gpu_image *image)
 {
     GLenum f = transfer_format(image->format);
-    return (size_t)image->width * (f == GL_RED ? 1 : f == GL_RG || f == GL_RG_INTEGER ? 2 : 4) * sizeof(float);
+    return (f == GL_RED ? 1 : f == GL_RG || f == GL_RG_INTEGER ? 2 : 4) * sizeof(float);
 }
 
-void gpu_image_download_rows(const gpu_image *image, int y, int rows, float *pixels)
+static size_t row_bytes(const gpu_image *image) { return (size_t)image->width * pixel_bytes(image); }
+
+void gpu_image_upload(gpu *g, gpu_image *image, int level, const float *pixels)
 {
-    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    int w = image->width >> level, h = image->height >> level;
+    w = w > 0 ? w : 1, h = h > 0 ? h : 1;
+    glTextureSubImage2D(image->id, level, 0, 0, w, h, transfer_format(image->format), GL_FLOAT, pixels);
+    g->counts.uploads++;
+    g->counts.bytes_up += (long long)((size_t)w * (size_t)h * pixel_bytes(image));
+}
+
+void gpu_image_download_rows(gpu *g, const gpu_image *image, int y, int rows, float *pixels)
+{
+    gpu_barrier(g, GL_TEXTURE_UPDATE_BARRIER_BIT);
     glGetTextureSubImage(image->id, 0, 0, y, 0, image->width, rows, 1, transfer_format(image->format), GL_FLOAT,
                          (GLsizei)((size_t)rows * row_bytes(image)), pixels);
+    g->counts.read_backs++;
+    g->counts.bytes_down += (long long)((size_t)rows * row_bytes(image));
 }
 
-void gpu_image_download(const gpu_image *image, float *pixels)
+void gpu_image_download(gpu *g, const gpu_image *image, float *pixels)
 {
     // glGetTextureSubImage counts its buffer in a GLsizei; larger images go in bands.
     size_t row = row_bytes(image);
     int most = (int)(0x40000000u / row);
     for (int y = 0; y < image->height; y += most)
-        gpu_image_download_rows(image, y, image->height - y < most ? image->height - y : most,
+        gpu_image_download_rows(g, image, y, image->height - y < most ? image->height - y : most,
                                 pixels + (size_t)y * (row / sizeof *pixels));
 }
 

@@ -93,7 +93,7 @@ static bool make_planes(pass_context *c, error *e)
                  i == c->planes.count ? "uneven ground, as plane" : "plane", i + 1, 100.0 * c->planes.planes[i].share,
                  2.0 * c->planes.planes[i].half[0], 2.0 * c->planes.planes[i].half[1]);
     if (!gpu_image_make(c->g, &c->plane_image, GL_RGBA32F, COLUMNS, PLANES_MAX + 1, 1, e)) return false;
-    gpu_image_upload(&c->plane_image, 0, rows[0][0]);
+    gpu_image_upload(c->g, &c->plane_image, 0, rows[0][0]);
     return true;
 }
 
@@ -188,8 +188,8 @@ static bool light_planes(pass_context *c, const arc_params *params, const gpu_im
     gpu_bind_image(1, &c->normal, GL_READ_ONLY);
     gpu_bind_image(4, sender, GL_READ_ONLY);
     gpu_bind_image(5, albedo, GL_READ_ONLY);
-    glDispatchCompute(1, 1, 1);
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    gpu_dispatch(c->g, 1, 1, 1);
+    gpu_barrier(c->g, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     return true;
 }
 

@@ -46,7 +46,7 @@ static bool upload(pass_context *c, const char *name, gpu_image *image, GLenum f
 {
     if (!pixels) return true;
     if (!gpu_image_make(c->g, image, format, c->width, c->height, 1, e)) return false;
-    gpu_image_upload(image, 0, pixels);
+    gpu_image_upload(c->g, image, 0, pixels);
     size_t components = format == GL_R32F ? 1 : format == GL_RG32F ? 2 : 4;
     size_t bytes = (size_t)c->width * (size_t)c->height * components * sizeof *pixels;
     c->uploads[c->upload_count++] = (pass_upload){name, bytes};
@@ -80,7 +80,7 @@ bool pass_upload_environment(gpu *g, const environment *env, gpu_image *out, err
     *out = (gpu_image){0};
     if (env->white) return true; // shaders take its radiance from the frame's block (frame.env.w)
     if (!gpu_image_make(g, out, GL_RGBA32F, env->levels[0].width, env->levels[0].height, env->level_count, e)) return false;
-    for (int i = 0; i < env->level_count; i++) gpu_image_upload(out, i, env->levels[i].rgba);
+    for (int i = 0; i < env->level_count; i++) gpu_image_upload(g, out, i, env->levels[i].rgba);
     return gpu_finish(g, "the upload of the environment", e);
 }
 
@@ -91,7 +91,7 @@ bool pass_begin(pass_context *c, gpu *g, const gbuffer *gb, const environment *e
         .g = g, .log = log, .timing = timing, .width = gb->width, .height = gb->height, .set = *set, .gb = gb, .env = env};
     double wall = now(CLOCK_MONOTONIC), cpu = now(CLOCK_PROCESS_CPUTIME_ID);
     bool ok = upload_all(c, gb, e) &&
-              gpu_tiles_make(&c->tiles, c->width, c->height, gpu_tile_size(), gb->depth, gb->coverage, e) &&
+              gpu_tiles_make(&c->tiles, c->width, c->height, gpu_tile_size(g, set->samples), gb->depth, gb->coverage, e) &&
               gpu_finish(g, "the upload", e);
     if (!ok) {
         pass_end(c);
@@ -180,7 +180,7 @@ bool pass_run(pass_context *c, const char *name, const char *defines, const void
     char file[64];
     snprintf(file, sizeof file, "%.*s.comp", (int)strcspn(name, " "), name);
     if (!set_up(c, file, defines, params, params_size, bindings, binding_count, e)) return false;
-    gpu_dispatch_tiles(&c->tiles, everywhere);
+    gpu_dispatch_tiles(c->g, &c->tiles, everywhere);
     return note_time(c, name, wall, cpu, everywhere, e);
 }
 

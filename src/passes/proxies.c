@@ -18,7 +18,7 @@ static bool upload(pass_context *c, gpu_image *image, error *e)
         for (int k = 0; k < 3; k++) albedo[k] = (float)s->albedo[k];
     }
     bool ok = gpu_image_make(c->g, image, GL_RGBA32F, c->proxies->count, 2, 1, e);
-    if (ok) gpu_image_upload(image, 0, v);
+    if (ok) gpu_image_upload(c->g, image, 0, v);
     free(v);
     return ok;
 }

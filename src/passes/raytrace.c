@@ -84,8 +84,8 @@ static bool run_step(trace_run *r, const char *name, const char *defines, size_t
     gpu_bind_buffer(6, &r->s->choices);
     gpu_bind_buffer(7, &r->pixels);
     glUniform4i(0, (GLint)first, (GLint)end, 0, 0);
-    glDispatchCompute((GLuint)(end - first + 63) / 64, 1, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    gpu_dispatch(c->g, (GLuint)(end - first + 63) / 64, 1, 1);
+    gpu_barrier(c->g, GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     return true;
 }
 
@@ -115,7 +115,7 @@ static bool count_found(trace_run *r, size_t first, size_t *found, error *e)
     size_t n = size_of_batch(r, first);
     trace_hit *hits = mem_pixels(n, sizeof *hits, e);
     if (!hits) return false;
-    gpu_buffer_read(&r->hits, hits, n * sizeof *hits);
+    gpu_buffer_read(r->c->g, &r->hits, hits, n * sizeof *hits);
     for (size_t i = 0; i < n; i++) *found += hits[i].triangle < TRACE_NO_RAY;
     free(hits);
     return true;
@@ -213,7 +213,7 @@ static bool report_round(const trace_run *r, int done, error *e)
     size_t n = (size_t)c->width * (size_t)c->height;
     float *sum = mem_pixels(n, sizeof *sum, e);
     if (!sum) return false;
-    gpu_image_download(&c->occlusion, sum);
+    gpu_image_download(c->g, &c->occlusion, sum);
     double variance = 0.0;
     for (size_t i = 0; i < n; i++) {
         double p = (double)sum[i] / done;

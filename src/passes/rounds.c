@@ -94,8 +94,8 @@ static bool measure(work *w, error *e)
     gpu_bind_image(0, &c->depth, GL_READ_ONLY);
     gpu_bind_image(2, &w->square, GL_READ_ONLY);
     gpu_bind_buffer(0, &w->totals);
-    glDispatchCompute((GLuint)c->tiles.columns, (GLuint)c->tiles.rows, 1);
-    gpu_buffer_read(&w->totals, w->read, w->totals.size);
+    gpu_dispatch(c->g, (GLuint)c->tiles.columns, (GLuint)c->tiles.rows, 1);
+    gpu_buffer_read(c->g, &w->totals, w->read, w->totals.size);
     return true;
 }
 

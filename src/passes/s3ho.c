@@ -66,7 +66,7 @@ static bool upload_stored(pass_context *c, error *e)
     for (int k = 0; k < images(c); k++) {
         memcpy(v, c->stored_sh[k], 4 * n * sizeof *v);
         for (size_t i = 0; k == 0 && i < n; i++) v[4 * i + 3] = (float)((double)v[4 * i] / (M_PI * Y00));
-        gpu_image_upload(&c->sh[k], 0, v);
+        gpu_image_upload(c->g, &c->sh[k], 0, v);
     }
     free(v);
     return true;

@@ -133,7 +133,7 @@ void trace_scene_close(trace_scene *s)
 
 // ---- tracing
 
-static bool send_to_embree(trace_scene *s, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e)
+static bool send_to_embree(trace_scene *s, gpu *g, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e)
 {
     if (count > s->room) {
         free(s->rays), free(s->hits);
@@ -143,9 +143,9 @@ static bool send_to_embree(trace_scene *s, const gpu_buffer *rays, gpu_buffer *h
         if (!s->rays || !s->hits) return false;
         s->room = count;
     }
-    gpu_buffer_read(rays, s->rays, count * sizeof *s->rays);
+    gpu_buffer_read(g, rays, s->rays, count * sizeof *s->rays);
     trace_cpu_rays(s->cpu, s->rays, s->hits, count);
-    gpu_buffer_write(hits, s->hits, count * sizeof *s->hits);
+    gpu_buffer_write(g, hits, s->hits, count * sizeof *s->hits);
     return true;
 }
 
@@ -174,17 +174,17 @@ static bool send_to_grid(trace_scene *s, gpu *g, const gpu_buffer *rays, gpu_buf
     gpu_bind_buffer(3, &s->triangles);
     gpu_bind_buffer(4, &s->offsets);
     gpu_bind_buffer(5, &s->items);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    gpu_barrier(g, GL_SHADER_STORAGE_BARRIER_BIT);
     for (size_t first = 0, n; first < count; first += n) {
         double start = milliseconds();
         n = count - first < s->chunk ? count - first : s->chunk;
         glUniform4i(0, (GLint)first, (GLint)(first + n), 0, 0);
-        glDispatchCompute((GLuint)(n + 63) / 64, 1, 1);
+        gpu_dispatch(g, (GLuint)(n + 63) / 64, 1, 1);
         glFinish();
         double took = milliseconds() - start;
         if (n == s->chunk || took > WANTED_MS) s->chunk = next_chunk(n, took);
     }
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    gpu_barrier(g, GL_SHADER_STORAGE_BARRIER_BIT);
     return true;
 }
 
@@ -192,5 +192,5 @@ void trace_longer_rays(trace_scene *s) { s->chunk = FIRST_CHUNK; }
 
 bool trace_send(trace_scene *s, gpu *g, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e)
 {
-    return s->cpu ? send_to_embree(s, rays, hits, count, e) : send_to_grid(s, g, rays, hits, count, e);
+    return s->cpu ? send_to_embree(s, g, rays, hits, count, e) : send_to_grid(s, g, rays, hits, count, e);
 }

@@ -110,7 +110,7 @@ static bool upload(pass_context *c, const vpl *lights, int count, gpu_image *ima
             for (size_t j = 0; j < 4; j++) v[4 * (row * n + k) + j] = (float)rows[row][j];
     }
     bool ok = gpu_image_make(c->g, image, GL_RGBA32F, count, 3, 1, e);
-    if (ok) gpu_image_upload(image, 0, v);
+    if (ok) gpu_image_upload(c->g, image, 0, v);
     free(v);
     return ok;
 }
@@ -124,7 +124,7 @@ static bool choose(pass_context *c, vpl *lights, int *count, error *e)
     }
     float *radiance = mem_pixels((size_t)c->width * (size_t)c->height * 4, sizeof *radiance, e);
     if (!radiance) return false;
-    gpu_image_download(&c->radiance, radiance);
+    gpu_image_download(c->g, &c->radiance, radiance);
     *count = vpl_choose(c->gb, radiance, c->gb->albedo, c->set.vpl_count, lights);
     free(radiance);
     return true;

@@ -142,6 +142,7 @@ bool filter_frame(job *j, frame_result *r, error *e)
 {
     pass_context c;
     double wall = milliseconds(CLOCK_MONOTONIC), cpu = milliseconds(CLOCK_PROCESS_CPUTIME_ID);
+    const gpu_counts before = j->g.counts;
     const environment *env = j->env_loaded ? &j->env : NULL;
     gbuffer gb = r->gb; // borrows its arrays
     if (!needs_coverage(&gb)) gb.coverage = NULL;
@@ -172,6 +173,7 @@ bool filter_frame(job *j, frame_result *r, error *e)
     r->planes = c.planes;
     if (ok) take_rounds(j, r, &c.rounds);
     r->tile_size = c.tiles.size, r->tiles = c.tiles.columns * c.tiles.rows, r->tiles_occupied = c.tiles.occupied_count;
+    r->gl = gpu_counts_since(&j->g, &before);
     pass_end(&c);
     return ok;
 }

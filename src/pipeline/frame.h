@@ -50,6 +50,7 @@ typedef struct frame_result {
     int tile_size, tiles, tiles_occupied; // tiles without a surface are not dispatched (but for the composite of a background)
     int rounds, tiles_above;              // of --error; 0 rounds: the number of samples was given
     double mean_samples;                  // a pixel, of those rounds
+    gpu_counts gl;                        // what the frame asked of GL
     size_t clamped;                       // samples of ours that a half could not hold
     // By channel, width * height of types[layer], as they are written, and the same as floats before rounding, interleaved. NULL
     // where a layer was not made, or its floats not kept.

@@ -50,14 +50,14 @@ typedef struct band {
 static size_t components(const gpu_image *image) { return image->format == GL_R32F ? 1 : 4; }
 
 // Leaves the layer's own channels, interleaved, in *v.
-static void fetch(const gpu_image *image, layer_id l, const gbuffer *gb, const band *b, float **v)
+static void fetch(gpu *g, const gpu_image *image, layer_id l, const gbuffer *gb, const band *b, float **v)
 {
     size_t stored = components(image), channels = strlen(layer_table[l].channels);
-    gpu_image_download_rows(image, b->y, b->rows, b->v);
+    gpu_image_download_rows(g, image, b->y, b->rows, b->v);
     *v = b->v;
     if (l == LAYER_SH_3) {
         float *second = b->v + 4 * b->pixels;
-        gpu_image_download_rows(image + 1, b->y, b->rows, second);
+        gpu_image_download_rows(g, image + 1, b->y, b->rows, second);
         for (size_t i = 0; i < b->pixels; i++) {
             memcpy(b->joined + 8 * i, b->v + 4 * i, 4 * sizeof *second);
             memcpy(b->joined + 8 * i + 4, second + 4 * i, 4 * sizeof *second);
@@ -95,7 +95,7 @@ static bool make_room(const job *j, layer_id l, frame_result *r, error *e)
     return j->no_floats || (r->layers[l] = mem_pixels(pixels * channels, sizeof(float), e));
 }
 
-static bool read_layer(const job *j, const gpu_image *image, layer_id l, frame_result *r, error *e)
+static bool read_layer(const job *j, gpu *g, const gpu_image *image, layer_id l, frame_result *r, error *e)
 {
     size_t width = (size_t)r->gb.width, channels = strlen(layer_table[l].channels);
     int most = (int)(BAND / (8 * width)) + 1;
@@ -106,7 +106,7 @@ static bool read_layer(const job *j, const gpu_image *image, layer_id l, frame_r
         float *v;
         b.rows = r->gb.height - b.y < most ? r->gb.height - b.y : most;
         b.first = (size_t)b.y * width, b.pixels = (size_t)b.rows * width;
-        fetch(image, l, &r->gb, &b, &v);
+        fetch(g, image, l, &r->gb, &b, &v);
         if (r->layers[l]) memcpy(r->layers[l] + channels * b.first, v, channels * b.pixels * sizeof *v);
         for (size_t k = 0; k < channels; k++)
             r->clamped += put(v + k, channels, b.pixels, r->types[l], r->samples[l][k], b.first);
@@ -135,6 +135,6 @@ bool read_back(const job *j, const pass_context *c, frame_result *r, error *e)
         [LAYER_ERROR] = &c->error,
     };
     for (int i = 0; i < LAYER_COUNT; i++)
-        if (r->plan.layers & 1u << i && !read_layer(j, images[i], (layer_id)i, r, e)) return false;
+        if (r->plan.layers & 1u << i && !read_layer(j, c->g, images[i], (layer_id)i, r, e)) return false;
     return true;
 }

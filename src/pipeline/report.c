@@ -106,6 +106,21 @@ static json_object *programs_of(const job *j)
     return o;
 }
 
+// What the frame asked of GL; the environment, which all frames share, is not among it.
+static json_object *gl_of(const gpu_counts *c)
+{
+    const struct {
+        const char *name;
+        long long count;
+    } list[] = {
+        {"dispatches", c->dispatches}, {"draws", c->draws},           {"barriers", c->barriers},     {"uploads", c->uploads},
+        {"bytes_up", c->bytes_up},     {"read_backs", c->read_backs}, {"bytes_down", c->bytes_down},
+    };
+    json_object *o = json_object_new_object();
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++) json_put(o, list[i].name, json_object_new_int64(list[i].count));
+    return o;
+}
+
 static json_object *tiles_of(const frame_result *r)
 {
     json_object *o = json_object_new_object();
@@ -198,6 +213,7 @@ static json_object *report_of(const job *j, const frame_result *r, const char *o
     json_put(o, "passes", passes_of(r));
     json_put(o, "times", times_of(r));
     json_put(o, "tiles", tiles_of(r));
+    json_put(o, "gl", gl_of(&r->gl));
     json_put(o, "programs", programs_of(j));
     json_put(o, "uploads", uploads_of(j, r));
     json_put(o, "clamped_samples", json_object_new_int64((int64_t)r->clamped));

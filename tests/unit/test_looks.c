@@ -311,9 +311,9 @@ static void relit_composite(rig *r, gbuffer *gb, bool all, double amount, float 
     must(pass_begin(&c, &r->job.g, gb, &r->job.env, &set, false, &r->log, &e), &e);
     c.environment = r->job.env_image;
     must(pass_hemisphere(&c, &e) && pass_irradiance(&c, &e) && pass_specular(&c, &e) && pass_composite(&c, &e), &e);
-    gpu_image_download(&c.occlusion, occlusion);
-    gpu_image_download(&c.specular, specular);
-    gpu_image_download(&c.composite, composite);
+    gpu_image_download(c.g, &c.occlusion, occlusion);
+    gpu_image_download(c.g, &c.specular, specular);
+    gpu_image_download(c.g, &c.composite, composite);
     pass_end(&c);
 }
 

@@ -117,6 +117,8 @@ static int64_t bytes_of(json_object *report, const char *name)
     return json_object_get_int64(field(entry(report, "uploads", "name", name), "bytes"));
 }
 
+static int64_t gl(json_object *report, const char *what) { return json_object_get_int64(field(field(report, "gl"), what)); }
+
 static void no_roughness_no_specular(void **state)
 {
     (void)state;
@@ -199,6 +201,9 @@ static void occlusion_uploads_depth_and_normals(void **state)
     assert_int_equal(json_object_array_length(field(r, "uploads")), 2);
     assert_int_equal(bytes_of(r, "depth"), 4 * WIDTH * HEIGHT);
     assert_int_equal(bytes_of(r, "normal"), 16 * WIDTH * HEIGHT);
+    assert_int_equal(gl(r, "uploads"), 2);
+    assert_int_equal(gl(r, "bytes_up"), 20 * WIDTH * HEIGHT);
+    assert_int_equal(gl(r, "bytes_down"), 4 * WIDTH * HEIGHT);
     assert_false(runs(r, "composite"));
     assert_false(runs(r, "edges"));
     json_object_put(r);
@@ -246,8 +251,13 @@ static void empty_tiles_are_not_dispatched(void **state)
     assert_int_equal(json_object_get_int(field(tiles, "dispatched")), 1);
     assert_int_equal(json_object_get_int(field(tiles, "skipped")), 5);
     assert_int_equal(json_object_get_int(field(entry(r, "times", "stage", "ssdo"), "tiles")), 1);
+    int64_t sparse = gl(r, "dispatches") + gl(r, "draws");
+    assert_true(gl(r, "dispatches") > 0 && gl(r, "barriers") > 0);
     json_object_put(r);
     remove(path);
+    r = report_of_scene((scene_exr_options){0}, "occlusion", NULL);
+    assert_true(gl(r, "dispatches") + gl(r, "draws") > sparse);
+    json_object_put(r);
 }
 
 // arc marches for what is asked for, and once for what one march can serve.
