@@ -220,15 +220,39 @@ static void sync_folder(const char *target)
     free(folder);
 }
 
+bool outfile_put(outfile *out, const void *bytes, size_t size, uint64_t offset)
+{
+    const char *from = bytes;
+    for (size_t done = 0; done < size && !out->code;) {
+        ssize_t n = pwrite(out->fd, from + done, size - done, (off_t)(offset + done));
+        if (n < 0 && errno == EINTR) continue;
+        if (n > 0)
+            done += (size_t)n;
+        else
+            out->code = n < 0 ? errno : ENOSPC;
+    }
+    if (offset + size > out->end) out->end = offset + size;
+    return !out->code;
+}
+
+// A file system may drop bytes that it took, and say so late or never.
+static int check_length(const outfile *out)
+{
+    struct stat st;
+    if (fstat(out->fd, &st) != 0) return errno;
+    return (uint64_t)st.st_size == out->end ? 0 : EIO;
+}
+
 bool outfile_commit(outfile *out, error *e)
 {
-    int code = 0;
-    if (fsync(out->fd) != 0 && errno != EINVAL && errno != EROFS) code = errno;
+    int code = out->code;
+    if (!code && fsync(out->fd) != 0 && errno != EINVAL && errno != EROFS) code = errno;
+    if (!code) code = check_length(out);
     if (close(out->fd) != 0 && !code) code = errno; // NFS reports a full disk here
     out->fd = -1;
     if (!code && rename(out->temp, out->target) != 0) code = errno;
     if (code)
-        err_set(e, ERR_OUTPUT, out->target, NULL, "cannot finish the file: %s; free some space or choose another output",
+        err_set(e, ERR_OUTPUT, out->target, NULL, "cannot be written: %s; free some space or choose another output",
                 strerror(code));
     else {
         sync_folder(out->target);
@@ -250,4 +274,12 @@ void outfile_abort(outfile *out)
     free(out->temp);
     free(out->target);
     *out = OUTFILE_NONE;
+}
+
+bool outfile_write(const char *path, const void *bytes, size_t size, error *e)
+{
+    outfile out = OUTFILE_NONE;
+    if (!outfile_begin(path, &out, e)) return false;
+    outfile_put(&out, bytes, size, 0);
+    return outfile_commit(&out, e);
 }

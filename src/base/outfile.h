@@ -11,6 +11,8 @@
 #define SSDO_BASE_OUTFILE_H
 
 #include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
 #include "base/error.h"
 
@@ -20,6 +22,8 @@ typedef struct outfile {
     int fd;       // open for reading and writing while the file is being made, otherwise -1
     char *temp;   // path of the temporary file, owned
     char *target; // path that commit renames it to, owned
+    uint64_t end; // bytes that the file has after all that was put into it
+    int code;     // errno of the first put that failed, 0 for none
 } outfile;
 
 #define OUTFILE_NONE ((outfile){.fd = -1})
@@ -28,6 +32,12 @@ typedef struct outfile {
 // that is not a regular file.
 bool outfile_begin(const char *path, outfile *out, error *e);
 
+// Puts bytes at an offset; false (and `code`) when the system does not take all of them. One thread at a time.
+bool outfile_put(outfile *out, const void *bytes, size_t size, uint64_t offset);
+
+// A whole file out of memory: begin, put, commit.
+bool outfile_write(const char *path, const void *bytes, size_t size, error *e);
+
 // Removes what a killed process left beside the target, as beginning does: for a target that is done already.
 void outfile_tidy(const char *path);
 
@@ -35,7 +45,8 @@ void outfile_tidy(const char *path);
 // outfile_begin's.
 bool outfile_check_folder(const char *path, error *e);
 
-// Flush, close, rename. On failure the temporary file is removed. *out is spent either way.
+// Flush, check that the file is as long as what was put into it, close, rename. After a put that failed, or on a failure here,
+// the temporary file is removed and an older target stays as it was. *out is spent either way.
 bool outfile_commit(outfile *out, error *e);
 
 // Closes and removes the temporary file. Harmless on OUTFILE_NONE and on a spent outfile.

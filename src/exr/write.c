@@ -38,11 +38,6 @@ typedef struct write_job {
     exr_result_t result; // the first failure
 } write_job;
 
-typedef struct stream {
-    int fd;
-    int code; // errno of the first failed write
-} stream;
-
 // --- the library's callbacks ---
 
 static void ignore_message(exr_const_context_t context, exr_result_t code, const char *message)
@@ -57,18 +52,7 @@ static int64_t write_bytes(exr_const_context_t context, void *user, const void *
 {
     (void)context;
     (void)report;
-    stream *s = user;
-    const char *from = buffer;
-    for (uint64_t done = 0; done < size;) {
-        ssize_t n = pwrite(s->fd, from + done, size - done, (off_t)(offset + done));
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) {
-            s->code = n < 0 ? errno : ENOSPC;
-            return -1;
-        }
-        done += (uint64_t)n;
-    }
-    return (int64_t)size;
+    return outfile_put(user, buffer, size, offset) ? (int64_t)size : -1;
 }
 
 static void *core_allocate(size_t size) { return mem_zero(size, 1, NULL); }
@@ -207,13 +191,13 @@ static exr_result_t write_part(exr_context_t core, int index, const exr_out_part
 
 // --- the file ---
 
-static bool report(exr_result_t rv, const stream *s, const char *path, error *e)
+static bool report(exr_result_t rv, const outfile *file, const char *path, error *e)
 {
     if (rv == EXR_ERR_OUT_OF_MEMORY)
         return err_set(e, ERR_MEMORY, path, NULL, "out of memory while writing; try fewer threads or frames in flight");
-    if (s->code)
+    if (file->code)
         return err_set(e, ERR_OUTPUT, path, NULL, "cannot be written: %s; free some space or choose another output",
-                       strerror(s->code));
+                       strerror(file->code));
     return err_set(e, ERR_OUTPUT, path, NULL, "cannot be written as OpenEXR (%s); try --keep none",
                    exr_get_default_error_message(rv));
 }
@@ -223,10 +207,9 @@ bool exr_write(const char *path, const exr_out_part *parts, int part_count, int 
     if (!exr_check_parts(path, parts, part_count, e)) return false;
     outfile file = OUTFILE_NONE;
     if (!outfile_begin(path, &file, e)) return false;
-    stream s = {.fd = file.fd};
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.error_handler_fn = ignore_message;
-    init.user_data = &s;
+    init.user_data = &file;
     init.write_fn = write_bytes;
     init.alloc_fn = core_allocate;
     init.free_fn = core_free;
@@ -238,7 +221,7 @@ bool exr_write(const char *path, const exr_out_part *parts, int part_count, int 
     exr_result_t finished = core ? exr_finish(&core) : EXR_ERR_SUCCESS;
     if (rv == EXR_ERR_SUCCESS) rv = finished;
     if (rv == EXR_ERR_SUCCESS) return outfile_commit(&file, e);
-    report(rv, &s, path, e);
+    report(rv, &file, path, e);
     outfile_abort(&file);
     return false;
 }

@@ -1,9 +1,9 @@
 #include "pipeline/json.h"
 
-#include <errno.h>
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/mem.h"
 #include "base/outfile.h"
 
 void json_put(json_object *o, const char *key, json_object *value) { json_object_object_add(o, key, value); }
@@ -28,15 +28,13 @@ bool json_save(json_object *o, const char *path, error *e)
 {
     const char *text =
         json_object_to_json_string_ext(o, JSON_C_TO_STRING_PRETTY | JSON_C_TO_STRING_SPACED | JSON_C_TO_STRING_NOSLASHESCAPE);
-    outfile out = OUTFILE_NONE;
-    bool ok = outfile_begin(path, &out, e);
-    if (ok && dprintf(out.fd, "%s\n", text) < 0)
-        ok = err_set(e, ERR_OUTPUT, path, NULL, "the report cannot be written: %s; free some space or choose another folder",
-                     strerror(errno));
-    if (ok)
-        ok = outfile_commit(&out, e);
-    else
-        outfile_abort(&out);
+    size_t n = text ? strlen(text) : 0;
+    char *lines = text ? mem_zero(n + 2, 1, e) : NULL;
+    if (lines) memcpy(lines, text, n);
+    if (lines) lines[n] = '\n';
+    bool ok = lines && outfile_write(path, lines, n + 1, e);
+    if (!text) err_set(e, ERR_MEMORY, path, NULL, "out of memory while writing the report");
+    free(lines);
     json_object_put(o);
     return ok;
 }

@@ -216,7 +216,7 @@ bool preview_write(const options *o, const frame_result *r, const char *path, er
         cell++;
     }
     draw_legend(&s, o, r, below, columns * (z.width + GAP) - GAP, &z);
-    ok = ok && images_write_png(path, s.width, s.height, s.rgb, e);
+    ok = ok && images_write_png(path, s.width, s.height, s.rgb, "Software", "ssdo-filter", e);
     sheet_free(&s);
     return ok;
 }

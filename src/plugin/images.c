@@ -1,5 +1,7 @@
 #include "plugin/images.h"
 
+#include <stdlib.h>
+
 #include "base/outfile.h"
 #include "plugin/images_abi.h"
 #include "plugin/module.h"
@@ -28,14 +30,17 @@ bool images_read_exr_native(const char *path, int part, int count, const char *c
     return err_set(e, ERR_INPUT, path, NULL, "is truncated or damaged: %s; render it or copy it again", message);
 }
 
-bool images_write_png(const char *path, int width, int height, const uint8_t *rgb, error *e)
+bool images_write_png(const char *path, int width, int height, const uint8_t *rgb, const char *key, const char *label, error *e)
 {
     char message[MODULE_MESSAGE] = "";
-    images_write_png_fn write =
-        (images_write_png_fn)module_function(&images, "ssdo_images_write_png", "writing a PNG", ERR_OUTPUT, path, e);
-    outfile file = OUTFILE_NONE;
-    if (!write || !outfile_begin(path, &file, e)) return false;
-    if (write(file.temp, width, height, rgb, message, sizeof message)) return outfile_commit(&file, e);
-    outfile_abort(&file);
-    return err_set(e, ERR_OUTPUT, path, NULL, "cannot be written as PNG: %s; free some space or choose another output", message);
+    void *bytes = NULL;
+    size_t size = 0;
+    images_encode_png_fn encode =
+        (images_encode_png_fn)module_function(&images, "ssdo_images_encode_png", "writing a PNG", ERR_OUTPUT, path, e);
+    if (!encode) return false;
+    if (!encode(width, height, rgb, key, label, &bytes, &size, message, sizeof message))
+        return err_set(e, ERR_OUTPUT, path, NULL, "cannot be made into a PNG: %s", message);
+    bool ok = outfile_write(path, bytes, size, e);
+    free(bytes);
+    return ok;
 }

@@ -18,7 +18,7 @@ bool images_read_float(const char *path, int part, int *width, int *height, int 
 bool images_read_exr_native(const char *path, int part, int count, const char *const *names, const int *types, void **data,
                             error *e);
 
-// Writes 8-bit RGB, top row first. Temporary name and rename, as for EXR.
-bool images_write_png(const char *path, int width, int height, const uint8_t *rgb, error *e);
+// Writes 8-bit RGB, top row first, whole or not at all (base/outfile.h). label: a text that the file carries as `key`.
+bool images_write_png(const char *path, int width, int height, const uint8_t *rgb, const char *key, const char *label, error *e);
 
 #endif

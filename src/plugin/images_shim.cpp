@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include "plugin/images_abi.h"
@@ -106,14 +107,21 @@ void read_native(const char *path, int part, int count, const char *const *names
     for (int i = 0; i < count; i++) data[i] = planes[i].release();
 }
 
-void write_png(const char *path, int width, int height, const uint8_t *rgb)
+// To memory: the library's own file writer does not tell when a disk is full.
+void encode_png(int width, int height, const uint8_t *rgb, const char *key, const char *label, void **bytes, size_t *size)
 {
-    auto out = ImageOutput::create("png");
+    Filesystem::IOVecOutput file;
+    auto out = ImageOutput::create("png", &file);
     if (!out) throw std::runtime_error(reason(OIIO::geterror(), "OpenImageIO was built without PNG"));
     ImageSpec spec(width, height, 3, TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
-    if (!out->open(path, spec) || !out->write_image(TypeDesc::UINT8, rgb) || !out->close())
+    spec.attribute(key, label);
+    if (!out->set_ioproxy(&file) || !out->open("memory.png", spec) || !out->write_image(TypeDesc::UINT8, rgb) || !out->close())
         throw std::runtime_error(reason(out->geterror(), "unknown failure"));
+    memory copy = allocate(file.buffer().size());
+    std::memcpy(copy.get(), file.buffer().data(), file.buffer().size());
+    *size = file.buffer().size();
+    *bytes = copy.release();
 }
 } // namespace
 
@@ -141,8 +149,9 @@ EXPORT int ssdo_images_read_native(const char *path, int part, int count, const 
     return guarded(message, message_size, [&] { read_native(path, part, count, names, types, data); });
 }
 
-EXPORT int ssdo_images_write_png(const char *path, int width, int height, const uint8_t *rgb, char *message, size_t message_size)
+EXPORT int ssdo_images_encode_png(int width, int height, const uint8_t *rgb, const char *key, const char *label, void **bytes,
+                                  size_t *size, char *message, size_t message_size)
 {
-    return guarded(message, message_size, [&] { write_png(path, width, height, rgb); });
+    return guarded(message, message_size, [&] { encode_png(width, height, rgb, key, label, bytes, size); });
 }
 }

@@ -30,7 +30,8 @@ static void test_png_there_and_back(void **state)
     uint8_t rgb[W * H * 3];
     for (int i = 0; i < W * H * 3; i++) rgb[i] = (uint8_t)(i * 5 + 1);
     error e = {0};
-    for (int twice = 0; twice < 2; twice++) assert_ok(images_write_png(in_scratch("a.png"), W, H, rgb, &e), e); // replaces
+    for (int twice = 0; twice < 2; twice++)
+        assert_ok(images_write_png(in_scratch("a.png"), W, H, rgb, "Software", "test", &e), e); // replaces
     int w, h, channels;
     float *pixels;
     assert_ok(images_read_float(in_scratch("a.png"), 0, &w, &h, &channels, &pixels, &e), e);
@@ -47,7 +48,7 @@ static void test_failures(void **state)
     if (!have_module()) return;
     const uint8_t rgb[3] = {1, 2, 3};
     error e = {0};
-    assert_false(images_write_png(in_scratch("none/a.png"), 1, 1, rgb, &e));
+    assert_false(images_write_png(in_scratch("none/a.png"), 1, 1, rgb, "Software", "test", &e));
     assert_int_equal(e.code, ERR_OUTPUT);
     assert_non_null(strstr(e.message, in_scratch("none")));
     int w, h, channels;
@@ -100,7 +101,7 @@ static void test_without_the_module(void **state)
     error in = {0}, out = {0};
     int w, h, channels;
     float *pixels;
-    assert_false(images_write_png(in_scratch("b.png"), 1, 1, rgb, &out));
+    assert_false(images_write_png(in_scratch("b.png"), 1, 1, rgb, "Software", "test", &out));
     assert_false(images_read_float(in_scratch("b.png"), 0, &w, &h, &channels, &pixels, &in));
     setenv("SSDO_PLUGIN_DIR", folder, 1);
     free(folder);
@@ -119,7 +120,7 @@ static void test_broken_module(void **state)
     setenv("SSDO_PLUGIN_DIR", scratch_folder, 1);
     const uint8_t rgb[3] = {1, 2, 3};
     error e = {0};
-    bool ok = images_write_png(in_scratch("b.png"), 1, 1, rgb, &e);
+    bool ok = images_write_png(in_scratch("b.png"), 1, 1, rgb, "Software", "test", &e);
     setenv("SSDO_PLUGIN_DIR", folder, 1);
     free(folder);
     unlink(in_scratch("ssdo-images.so"));
