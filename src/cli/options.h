@@ -67,7 +67,8 @@ typedef struct options {
 
     const char *role_names[16]; // --position ... --emission, indexed by gbuffer/resolve.h's role
     const char *depth_kind, *albedo_kind, *view_layer;
-    double fov, ortho; // 0 = not given
+    const char *normal_space, *normal_encoding; // NULL = found
+    double fov, ortho;                          // 0 = not given
     const char *camera_file;
 
     bool keep_none;

@@ -98,6 +98,8 @@ static bool summarise(build *b)
     if (g->position_is_camera_space) g->camera.has_world = false;
     if (b->has_header_pose)
         g->camera.world_from_camera = b->world_from_camera, g->camera.origin = b->eye, g->camera.has_world = true;
+    if (b->rotation_from_normals) g->camera.world_from_camera = b->world_from_camera, g->camera.has_world = false;
+    g->camera.has_rotation = g->camera.has_world || b->rotation_from_normals;
     const mat3 y_up = {{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
     g->normal_from_camera = b->has_normal         ? m3_transpose(b->normal_to_camera)
                             : g->camera.has_world ? g->camera.world_from_camera

@@ -59,20 +59,23 @@ typedef struct build {
     size_t point_count;
     size_t candidates; // surface pixels found by classification
 
-    bool has_pose;       // camera->world_from_camera takes P's space to camera space
-    bool depth_measured; // Z is known to be planar or radial depth
-    bool depth_wins;     // z comes from Z
-    double depth_offset; // orthographic: z = Z + offset
-    double far_pixels;   // P further than this from its pixel is not believed
-    bool lateral;        // P is fine enough to tell where in its pixel it was sampled
+    bool has_pose;         // camera->world_from_camera takes P's space to camera space
+    bool depth_measured;   // Z is known to be planar or radial depth
+    bool depth_wins;       // z comes from Z
+    double depth_offset;   // orthographic: z = Z + offset
+    double far_pixels;     // P further than this from its pixel is not believed
+    bool lateral;          // P is fine enough to tell where in its pixel it was sampled
+    double depth_rounding; // of raw, in scene units, and the depth it is meant at: medians
+    double typical_depth;
 
     bool has_rotation;    // the camera's world_from_camera is that of a flag or of the positions
     bool has_header_pose; // else: the header's, which nothing has confirmed yet
     header_pose pose;
-    mat3 world_from_camera; // has_header_pose: the camera's in the end
+    bool rotation_from_normals; // else: they know the camera's rotation, and nobody its place
+    mat3 world_from_camera;     // has_header_pose or rotation_from_normals: the camera's in the end
     vec3 eye;
     mat3 normal_to_camera; // takes the file's normals to camera space
-    bool normal_unorm;
+    normal_encoding normal_encoding;
     double longest_normal; // as stored; longer ones are damaged
 
     // What could not be used (defects.c): counted by rows on several threads.
@@ -120,8 +123,10 @@ bool validity_sample(build *b);
 // choose_camera.c: the camera by flag, fit, header or plane.
 bool choose_camera(build *b);
 
-// measure.c: what Z is, and whether it or P gives the depth; what the normals are.
+// measure.c: what Z is, and whether it or P gives the depth.
 bool measure_depth(build *b);
+
+// normal_reading.c: what the normals are, and where they put the camera.
 bool measure_normals(build *b);
 
 // damage.c: warns of filtered or lossily compressed geometry. Before positions_final.

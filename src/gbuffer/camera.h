@@ -26,6 +26,7 @@ typedef struct camera {
     double fx, fy;          // perspective: focal length in pixels; orthographic: pixels per scene unit
     double cx, cy;          // principal point in data-window pixels
     bool has_world;         // world_from_camera and origin are known
+    bool has_rotation;      // world_from_camera is known, and so it is with has_world
     mat3 world_from_camera; // columns: camera x, y, z in world space
     vec3 origin;            // the eye in world space
     double residual;        // median reprojection error in pixels; negative when nothing was measured

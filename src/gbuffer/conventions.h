@@ -18,6 +18,7 @@
 
 #include <stdbool.h>
 
+#include "gbuffer/encoding.h"
 #include "gbuffer/resolve.h"
 
 enum { CONVENTION_PATTERNS = 10, CONVENTION_MARKS = 4 };
@@ -32,9 +33,6 @@ typedef struct header_camera {
     const char *angles;   // instead of a pose: what stands before "Rot/yaw" (degrees) and "Pos/x", Unreal's axes
 } header_camera;
 
-typedef enum space { SPACE_UNKNOWN, SPACE_WORLD, SPACE_CAMERA } space;
-typedef enum normal_encoding { NORMAL_SIGNED, NORMAL_UNORM } normal_encoding; // unorm: 0..1, n = 2 v - 1
-
 typedef struct convention {
     const char *name;
     bool confirmed;                      // by a file of the renderer itself, not only by its documentation
@@ -42,7 +40,7 @@ typedef struct convention {
     const char *patterns[ROLE_COUNT][CONVENTION_PATTERNS];
     const char *diffuse_albedo[4]; // those patterns of ROLE_ALBEDO that name a diffuse albedo; the others are `albedo`
     albedo_kind albedo;
-    space position_space, normal_space;
+    pass_space position_space, normal_space;
     normal_encoding normal_encoding;
     bool normals_averaged; // edge pixels hold the average of the normals, so |N| is coverage
     depth_kind depth;

@@ -53,7 +53,7 @@ typedef struct look {
 static vec3 stored_normal(const build *b, int x, int y)
 {
     vec3 n = v3(plane_get(&b->normal[0], x, y), plane_get(&b->normal[1], x, y), plane_get(&b->normal[2], x, y));
-    if (b->normal_unorm) n = v3(2.0 * n.x - 1.0, 2.0 * n.y - 1.0, 2.0 * n.z - 1.0);
+    n = encoding_decode(b->normal_encoding, n);
     return v3_finite(n) ? n : v3(0, 0, 0);
 }
 

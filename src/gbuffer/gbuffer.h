@@ -10,7 +10,9 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "gbuffer/camera.h"
+#include "gbuffer/encoding.h"
 #include "gbuffer/resolve.h"
+#include "gbuffer/verdict.h"
 
 enum gbuffer_need {
     NEED_ALBEDO = 1 << 0,
@@ -23,9 +25,11 @@ enum gbuffer_need {
 };
 
 typedef struct gbuffer_options {
-    unsigned need;           // gbuffer_need bits; depth and normal are always made
-    const char *camera_file; // --camera
-    double fov, ortho;       // --fov, --ortho; 0 = not given
+    unsigned need;               // gbuffer_need bits; depth and normal are always made
+    const char *camera_file;     // --camera
+    double fov, ortho;           // --fov, --ortho; 0 = not given
+    pass_space normal_space;     // --normal-space; unknown: to be found
+    const char *normal_encoding; // --normal-encoding; NULL: to be found
     int threads;
 } gbuffer_options;
 
@@ -51,7 +55,8 @@ typedef struct gbuffer {
     size_t valid;            // pixels with a surface
     size_t off_ray;          // pixels whose P lay off their own ray and were moved onto it (DESIGN.md 4)
     double extent;           // robust size of the visible surfaces, scene units: gbuffer_extent in radius.h
-    char evidence[12][160];  // what was measured, one line each, for -v and the report
+    verdict position_verdict, normal_verdict, depth_verdict;
+    char evidence[12][160]; // what was measured, one line each, for -v and the report
     int evidence_count;
 } gbuffer;
 

@@ -14,7 +14,7 @@ static vec3 stored(const build *b, int x, int y)
 
 double normals_length(const build *b, int x, int y)
 {
-    vec3 n = b->has_normal && !b->normal_unorm ? stored(b, x, y) : v3(0, 0, 0);
+    vec3 n = b->has_normal && b->normal_encoding == NORMAL_SIGNED ? stored(b, x, y) : v3(0, 0, 0);
     return v3_finite(n) ? v3_length(n) : 0.0;
 }
 
@@ -23,7 +23,7 @@ bool normals_read(const build *b, int x, int y, vec3 *n)
     if (!b->has_normal) return false;
     vec3 v = stored(b, x, y);
     if (v3_length(v) > b->longest_normal) return false;
-    if (b->normal_unorm) v = v3(2.0 * v.x - 1.0, 2.0 * v.y - 1.0, 2.0 * v.z - 1.0);
+    v = encoding_decode(b->normal_encoding, v);
     *n = v3_normalize(m3_apply(b->normal_to_camera, v));
     return v3_dot(*n, *n) > 0.5;
 }

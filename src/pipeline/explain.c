@@ -47,7 +47,9 @@ static void explain_evidence(const frame_result *r, FILE *to)
     fprintf(to, "  surfaces: %zu of %zu pixels\n", r->gb.valid, (size_t)r->gb.width * (size_t)r->gb.height);
     fprintf(to, "  automatic radius: %g scene units\n", gbuffer_auto_radius(&r->gb));
     fprintf(to, "  world directions: %s\n",
-            r->gb.camera.has_world ? "known" : "unknown (--env needs --env-frame camera or --camera)");
+            r->gb.camera.has_world      ? "known"
+            : r->gb.camera.has_rotation ? "known by the normals, the eye's place is not"
+                                        : "unknown (--env needs --env-frame camera, --camera or --normal-space world)");
 }
 
 static void explain_colour(const options *o, const frame_result *r, FILE *to)

@@ -117,10 +117,21 @@ static bool convert_albedo(const job *j, frame_result *r, error *e)
     return ok;
 }
 
+static pass_space normal_space_of(const options *o)
+{
+    if (!o->normal_space) return SPACE_UNKNOWN;
+    return strcmp(o->normal_space, "world") == 0 ? SPACE_WORLD : SPACE_CAMERA;
+}
+
 static bool build_view(const job *j, frame_result *r, error *e)
 {
-    gbuffer_options g = {
-        .need = r->plan.need, .camera_file = j->o->camera_file, .fov = j->o->fov, .ortho = j->o->ortho, .threads = j->threads};
+    gbuffer_options g = {.need = r->plan.need,
+                         .camera_file = j->o->camera_file,
+                         .fov = j->o->fov,
+                         .ortho = j->o->ortho,
+                         .threads = j->threads,
+                         .normal_space = normal_space_of(j->o),
+                         .normal_encoding = j->o->normal_encoding};
     if (r->view) log_info(j->log, "view %s:", r->view);
     return gbuffer_build(r->file, &r->resolution, &g, &r->gb, j->log, e) && convert_albedo(j, r, e) &&
            (!r->plan.from_sh || stored_sh_load(j->o, r->file, r->view, &r->gb, r->stored_sh, e));
@@ -263,10 +274,10 @@ static bool prepare_light(job *j, const frame_result *r, error *e)
 static bool check_world(const job *j, const frame_result *r, error *e)
 {
     bool camera_frame = strcmp(j->o->env_frame, "camera") == 0;
-    if (!j->o->env || !r->plan.light || camera_frame || r->gb.camera.has_world || r->gb.valid == 0) return true;
-    return err_set(
-        e, ERR_INPUT, r->file->path, NULL,
-        "--env needs world directions, and this frame's camera rotation is unknown; use --env-frame camera or --camera FILE");
+    if (!j->o->env || !r->plan.light || camera_frame || r->gb.camera.has_rotation || r->gb.valid == 0) return true;
+    return err_set(e, ERR_INPUT, r->file->path, NULL,
+                   "--env needs world directions, and this frame's camera rotation is unknown; use --env-frame camera, --camera "
+                   "FILE or, if the normals are in world space, --normal-space world");
 }
 
 static double radius_of(const job *j, const gbuffer *gb)
@@ -305,7 +316,7 @@ static mat3 world_from_camera(const job *j, const frame_result *r)
 {
     static const mat3 up_z = {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}}, up_y = {{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
     if (strcmp(j->o->env_frame, "camera") == 0) return env_up_z(j, r) ? up_z : up_y;
-    return r->gb.camera.has_world ? r->gb.camera.world_from_camera : m3_identity();
+    return r->gb.camera.has_rotation ? r->gb.camera.world_from_camera : m3_identity();
 }
 
 // composite.comp: 1 the beauty, 2 the environment, 0 nothing.

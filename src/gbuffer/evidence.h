@@ -1,0 +1,32 @@
+// The surfaces that the meaning of a pass is tested on: normals of the shape itself at smooth pixels, spread over the frame and
+// over the directions that the surfaces face. Internal to the room.
+//
+// A pixel is smooth if its neighbours on either side form the same plane within 18 degrees and it is not seen edge-on; a
+// silhouette, a crease and a leaf of two pixels are not. Neighbours are taken as far apart as rounding needs it (half floats).
+// Each sample weighs one over the root of how many face the same way, so that a floor over most of the picture leaves the rest
+// its say: all of a floor's samples together weigh its root.
+#ifndef SSDO_GBUFFER_EVIDENCE_H
+#define SSDO_GBUFFER_EVIDENCE_H
+
+#include "gbuffer/build.h"
+
+enum { EVIDENCE_SAMPLES = 3000 };
+
+typedef struct evidence {
+    vec3 surface[EVIDENCE_SAMPLES]; // unit normal in camera space, facing the eye
+    vec3 stored[EVIDENCE_SAMPLES];  // the file's normal there, as it is; NaN where the file has none
+    double weight[EVIDENCE_SAMPLES];
+    size_t count;
+    double spread; // 1 - |weighted mean of the surface normals|^2: 0 where all face one way
+} evidence;
+
+// Camera-space position of a pixel; false where there is no surface. `context` is the caller's.
+typedef bool (*evidence_point)(const build *b, const void *context, int x, int y, vec3 *p);
+
+// `step`: how far apart neighbours are taken, in pixels. `most`: of samples, at most EVIDENCE_SAMPLES.
+void evidence_gather(const build *b, evidence_point point, const void *context, int step, size_t most, evidence *out);
+
+// The step that keeps the slope of rounded depths within about two degrees: `rounding` in scene units at depth z.
+int evidence_step(const build *b, double rounding, double z);
+
+#endif
