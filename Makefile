@@ -17,7 +17,7 @@ endif
 
 # Debian packages: what the build needs, what `make check` needs on top.
 DEPS_BUILD := gcc g++ pkg-config libopenexr-dev libopenimageio-dev libopencolorio-dev libembree-dev libegl-dev libegl-mesa0 libgl1-mesa-dri \
-              libepoxy-dev libdeflate-dev libjson-c-dev
+              libepoxy-dev libdeflate-dev libjson-c-dev libxxhash-dev
 DEPS_CHECK := libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender man-db parallel
 DEPS_BENCH := gnuplot-nox
 DEPS_HOSTS := blender openimageio-tools openexr imagemagick libmagickcore-6.q16-6-extra

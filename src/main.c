@@ -11,6 +11,7 @@
 #include "pipeline/batch.h"
 #include "pipeline/complete.h"
 #include "pipeline/explain.h"
+#include "pipeline/files.h"
 #include "pipeline/frame.h"
 #include "pipeline/preview.h"
 #include "pipeline/report.h"
@@ -63,13 +64,13 @@ static bool run_frame(job *j, error *e)
     progress p;
     progress_begin(&p, o->progress, 1, j->log);
     j->progress = &p;
-    bool ok = frame_check_output(o->inputs, o->input_count, o->output, e);
-    const char *why = ok ? resume_skips(j, o->inputs, o->input_count, o->output) : NULL;
+    bool ok = true;
+    const char *why = resume_skips(j, o->inputs, o->input_count, o->output);
     if (why) {
         progress_line(&p, "%s: skipped, %s", o->output, why);
         progress_finish(&p, PROGRESS_STEPS);
     } else {
-        ok = ok && frame_run_files(j, o->inputs, o->input_count, o->output, &r, e) &&
+        ok = frame_run_files(j, o->inputs, o->input_count, o->output, &r, e) &&
              (!o->preview || preview_write(o, &r, o->preview, e)) && (!o->report || report_write(j, &r, o->output, o->report, e));
     }
     frame_free(&r);
@@ -85,17 +86,28 @@ static bool check_targets(const options *o, error *e)
            (!o->report || outfile_check_folder(o->report, e)) && preview_check(o, e);
 }
 
-static bool run(const options *o, log_t *log, error *e)
+// Nothing is opened before it is sure that nothing will be lost; a sequence's frames are listed and compared by the batch.
+static bool run_on(const options *o, const run_files *files, log_t *log, error *e)
 {
     job j;
+    if (!batch_is(o) && !run_files_check(files, (const int[]){0}, 1, e)) return false;
     // A single frame is read while the context opens; what was made before is compared with the device first.
     bool alone = !batch_is(o) && !o->skip_existing;
     if (alone) job_init(&j, o, log);
     bool ok = (alone || job_open(&j, o, log, e)) && check_targets(o, e);
     j.stop = &stop_signal;
     j.no_floats = !o->preview;
+    j.files = files;
     if (ok) ok = batch_is(o) ? batch_run(&j, e) : run_frame(&j, e);
     job_close(&j);
+    return ok;
+}
+
+static bool run(const options *o, log_t *log, error *e)
+{
+    run_files files;
+    bool ok = run_files_list(o, &files, e) && run_on(o, &files, log, e);
+    run_files_free(&files);
     return ok;
 }
 

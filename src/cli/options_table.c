@@ -22,7 +22,7 @@ _Static_assert(sizeof(compose_mode) == sizeof(int) && sizeof(radius_unit) == siz
 // clang-format off
 const option_row option_rows[] = {
     {.group = GROUP_OUTPUT, .name = "output", .letter = 'o', .argument = "FILE", .kind = OPT_PATH, .offset = FIELD(output),
-     .help = "The EXR file to write. It is written whole or not at all, and may not be the input."},
+     .help = "The EXR file to write. It is written whole or not at all. Neither it nor the preview or the report may be a file that is read, nor one another."},
     {.group = GROUP_OUTPUT, .name = "layers", .argument = "LIST", .kind = OPT_TEXT, .offset = FIELD(layers), .pixels = true,
      .fallback = "occlusion,radiance,indirect,composite",
      .help = "Layers to write, separated by commas. A layer named here that cannot be made is an error; a default one is left out with a warning."},
@@ -211,7 +211,7 @@ const option_row option_rows[] = {
      .help = "Go on with the next frame when one fails. The exit status is 1 in the end, and the frames that failed are listed."},
     {.group = GROUP_RUN, .name = "radius-from", .argument = "FRAME", .kind = OPT_INT, .offset = FIELD(radius_from),
      .min = -1e8, .max = 1e8, .pixels = true, .fallback = "the lowest-numbered existing file",
-     .help = "Frame of the sequence on which the automatic radius is measured, so that all frames have the same."},
+     .help = "Frame of the sequence on which the automatic radius is measured, so that all frames have the same. Where the lowest frame cannot be read, --keep-going takes the next that can."},
     {.group = GROUP_RUN, .name = "progress", .argument = "auto|plain|alf|openjd|none", .kind = OPT_ENUM, .offset = FIELD(progress),
      .words = WORDS({"auto", PROGRESS_AUTO}, {"plain", PROGRESS_PLAIN}, {"alf", PROGRESS_ALF}, {"openjd", PROGRESS_OPENJD}, {"none", PROGRESS_NONE}),
      .fallback = "auto",

@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/mem.h"
@@ -227,9 +226,3 @@ bool exr_write(const char *path, const exr_out_part *parts, int part_count, int 
 }
 
 bool exr_part_is_verbatim(const exr_part *part) { return !part->tiled; }
-
-bool exr_same_file(const char *a, const char *b)
-{
-    struct stat sa, sb;
-    return stat(a, &sa) == 0 && stat(b, &sb) == 0 && sa.st_dev == sb.st_dev && sa.st_ino == sb.st_ino;
-}

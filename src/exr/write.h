@@ -64,7 +64,4 @@ bool exr_part_is_verbatim(const exr_part *part);
 // changed.
 size_t exr_to_half(const float *from, size_t stride, size_t n, uint16_t *to);
 
-// True if both paths name the same existing file (device and inode).
-bool exr_same_file(const char *a, const char *b);
-
 #endif

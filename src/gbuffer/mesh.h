@@ -48,6 +48,11 @@ typedef struct mesh_materials {
 bool mesh_read_mtl(const char *path, mesh_materials *table, error *e);
 void mesh_materials_free(mesh_materials *table);
 
+// The path of a material file that the mesh names: it lies beside the mesh.
+void mesh_library_path(const char *mesh, const char *name, char *path, size_t size);
+// The paths of all material files that the mesh names, a list to be freed with its strings.
+bool mesh_list_libraries(const char *mesh, char ***list, int *count, error *e);
+
 // One line at a time out of a text in memory, which is cut in place: comments, trailing blanks and "\" at line ends are gone.
 // NULL at the end. *number counts the file's lines.
 typedef struct mesh_lines {

@@ -105,3 +105,35 @@ void mesh_materials_free(mesh_materials *t)
     free(t->list);
     *t = (mesh_materials){0};
 }
+
+void mesh_library_path(const char *mesh, const char *name, char *path, size_t size)
+{
+    const char *slash = strrchr(mesh, '/');
+    int folder = slash && name[0] != '/' ? (int)(slash - mesh) + 1 : 0;
+    snprintf(path, size, "%.*s%s", folder, mesh, name);
+}
+
+bool mesh_list_libraries(const char *mesh, char ***list, int *count, error *e)
+{
+    char *text = mesh_read_text(mesh, e), *line, *name, path[4096];
+    mesh_lines lines = {text, 0};
+    bool ok = text != NULL;
+    *list = NULL;
+    *count = 0;
+    while (ok && (line = mesh_next_line(&lines))) {
+        if (!(name = mesh_after_word(line, "mtllib"))) continue;
+        char **grown = mem_grow(*list, (size_t)*count + 1, sizeof *grown, e);
+        mesh_library_path(mesh, name, path, sizeof path);
+        ok = grown != NULL;
+        if (ok) *list = grown;
+        ok = ok && (grown[*count] = mem_string(path, e));
+        if (ok) ++*count;
+    }
+    free(text);
+    if (ok) return true;
+    for (int i = 0; i < *count; i++) free((*list)[i]);
+    free(*list);
+    *list = NULL;
+    *count = 0;
+    return false;
+}

@@ -137,14 +137,12 @@ static bool read_face(reader *r, char *rest)
     return true;
 }
 
-// A material file lies beside the mesh. Missing colours are no reason to stop.
+// Missing colours are no reason to stop.
 static bool use_library(reader *r, const char *name)
 {
     char path[4096];
     error e = {0};
-    const char *slash = strrchr(r->path, '/');
-    int folder = slash && name[0] != '/' ? (int)(slash - r->path) + 1 : 0;
-    snprintf(path, sizeof path, "%.*s%s", folder, r->path, name);
+    mesh_library_path(r->path, name, path, sizeof path);
     if (mesh_read_mtl(path, &r->materials, &e)) return true;
     if (e.code == ERR_MEMORY) return err_set(r->e, e.code, NULL, NULL, "%s", e.message);
     if (r->log) log_warn(r->log, path, "%s: %s; surfaces without a colour reflect %g", path, e.message, (double)MESH_GREY);

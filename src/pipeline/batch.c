@@ -104,7 +104,6 @@ static void read_slot(batch *b, slot *s, int frame)
         err_set(&s->error, ERR_USAGE, NULL, NULL, "the path of frame %d is too long", frame);
         return;
     }
-    if (!frame_check_output(s->inputs.list, s->inputs.count, s->output, &s->error)) return;
     const char *why = resume_skips(b->j, s->inputs.list, s->inputs.count, s->output);
     if (why)
         skip(s, why);
@@ -240,23 +239,53 @@ static bool list_frames(const options *o, frame_list *out, error *e)
     return true;
 }
 
-// The same automatic radius for every frame and every farm task: from the lowest-numbered existing file, whatever --frames says.
-static bool fix_radius(job *j, error *e)
+static bool measure_radius(job *j, int frame, error *e)
 {
-    frame_list existing = {0};
-    if (j->o->radius_unit != RADIUS_AUTO) return true;
-    int frame = j->o->radius_from;
-    if (frame == INT_MIN) {
-        if (!pattern_scan(j->o->inputs[0], &existing, e)) return false;
-        if (existing.count == 0) return err_set(e, ERR_INPUT, j->o->inputs[0], NULL, "no file fits this pattern");
-        frame = existing.frames[0];
-        frames_free(&existing);
-    }
     input_paths *in = mem_zero(1, sizeof *in, e);
     bool ok = in && inputs_of_frame(j->o, frame, in) && frame_measure_radius(j, in->list, in->count, &j->shot_radius, e);
     if (ok) log_info(j->log, "radius: %g scene units for the whole sequence, from %s", j->shot_radius, in->list[0]);
     free(in);
     return ok || err_set(e, ERR_USAGE, j->o->inputs[0], NULL, "the path of frame %d is too long", frame);
+}
+
+// The lowest-numbered existing frame serves; with --keep-going the next one that can be read. Every task of a farm sees the same
+// files, and so finds the same.
+static bool measure_lowest(job *j, const frame_list *existing, error *e)
+{
+    char why[1600];
+    error first = {0};
+    for (int i = 0; i < existing->count && !job_stopped(j); i++) {
+        error here = {0};
+        if (measure_radius(j, existing->frames[i], &here)) {
+            if (i > 0)
+                log_warn(j->log, "radius-from", "the automatic radius is from frame %d, because frame %d cannot be used: %s",
+                         existing->frames[i], existing->frames[0], why);
+            return true;
+        }
+        if (i == 0) first = here;
+        if (i == 0) err_format(&here, why, sizeof why);
+        if (here.code != ERR_INPUT || !j->o->keep_going) break;
+    }
+    if (first.code != ERR_INPUT)
+        *e = first;
+    else
+        err_set(e, first.code, first.file, first.channel,
+                "%s. The automatic radius of the sequence is measured on this frame; --radius-from names another%s",
+                first.message, j->o->keep_going ? "" : ", --keep-going takes the next one that can be read");
+    return false;
+}
+
+// The same automatic radius for every frame and every farm task, whatever --frames says.
+static bool fix_radius(job *j, error *e)
+{
+    frame_list existing = {0};
+    if (j->o->radius_unit != RADIUS_AUTO) return true;
+    if (j->o->radius_from != INT_MIN) return measure_radius(j, j->o->radius_from, e);
+    if (!pattern_scan(j->o->inputs[0], &existing, e)) return false;
+    if (existing.count == 0) return err_set(e, ERR_INPUT, j->o->inputs[0], NULL, "no file fits this pattern");
+    bool ok = measure_lowest(j, &existing, e);
+    frames_free(&existing);
+    return ok;
 }
 
 static bool holds(const frame_list *l, int frame)
@@ -303,7 +332,8 @@ bool batch_run(job *j, error *e)
     b->j = j;
     pthread_mutex_init(&b->lock, NULL);
     pthread_cond_init(&b->changed, NULL);
-    bool ok = list_frames(j->o, &b->frames, e) && fix_radius(j, e);
+    bool ok = list_frames(j->o, &b->frames, e) &&
+              (!j->files || run_files_check(j->files, b->frames.frames, b->frames.count, e)) && fix_radius(j, e);
     b->failures.frames = ok ? mem_zero((size_t)b->frames.count, sizeof *b->failures.frames, e) : NULL;
     ok = ok && b->failures.frames;
     if (ok) compare_device(b);

@@ -378,7 +378,7 @@ static bool load_proxies(const job *j, frame_result *r, error *e)
     if (!r->gb.camera.has_world && r->gb.valid > 0)
         return err_set(e, ERR_INPUT, r->file->path, NULL,
                        "--proxies are in world space, and this frame's camera is not known there; give it with --camera FILE");
-    bool many = pattern_is(j->o->proxies) && access(j->o->proxies, R_OK) != 0;
+    bool many = proxies_are_framed(j->o);
     if (many && !pattern_path(j->o->proxies, r->frame, path, sizeof path))
         return err_set(e, ERR_USAGE, j->o->proxies, NULL, "--proxies: frame %d has no file name by this pattern", r->frame);
     return proxies_load(many ? path : j->o->proxies, &r->proxies, e);
@@ -413,15 +413,6 @@ bool frame_write(const job *j, frame_result *r, const char *output, error *e)
     return true;
 }
 
-bool frame_check_output(const char *const *inputs, int count, const char *output, error *e)
-{
-    for (int i = 0; i < count; i++)
-        if (exr_same_file(inputs[i], output))
-            return err_set(e, ERR_USAGE, output, NULL,
-                           "the output is the input file; name another output, so that nothing is lost");
-    return true;
-}
-
 bool frame_run(job *j, const char *input, const char *output, frame_result *r, error *e)
 {
     return frame_run_files(j, &input, 1, output, r, e);
@@ -430,7 +421,6 @@ bool frame_run(job *j, const char *input, const char *output, frame_result *r, e
 bool frame_run_files(job *j, const char *const *inputs, int count, const char *output, frame_result *r, error *e)
 {
     *r = (frame_result){0};
-    if (!frame_check_output(inputs, count, output, e)) return false;
     if (!(j->g.context ? frame_read_files(j, inputs, count, r, e) : read_and_open(j, inputs, count, r, e))) return false;
     progress_step(j->progress);
     if (job_stopped(j) || !frame_filter(j, r, e)) return false;

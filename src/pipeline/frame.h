@@ -10,12 +10,14 @@
 #include "light/environment.h"
 #include "passes/pass.h"
 #include "passes/trace.h"
+#include "pipeline/files.h"
 #include "pipeline/plan.h"
 
 // What lives for all frames of a run: options, context, environment.
 typedef struct job {
     const options *o;
     log_t *log;
+    const run_files *files; // borrowed: all that is read and written. NULL where only a frame is asked for
     int threads;
     gpu g;
     bool env_loaded; // the environment needs the first frame's renderer for its default up axis
@@ -71,9 +73,6 @@ bool job_open(job *j, const options *o, log_t *log, error *e);
 // True if the run was asked to stop.
 bool job_stopped(const job *j);
 void job_close(job *j);
-
-// ERR_USAGE if the output is one of the inputs.
-bool frame_check_output(const char *const *inputs, int count, const char *output, error *e);
 
 // The three stages of a frame, to be called in this order on one result; after a failure only frame_free. When the job is stopped
 // before the passes have ended, filtering returns false without an error. Reading and writing may

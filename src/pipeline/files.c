@@ -1,0 +1,165 @@
+#include "pipeline/files.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/digest.h"
+#include "base/mem.h"
+#include "cli/frames.h"
+#include "gbuffer/mesh.h"
+#include "pipeline/batch.h"
+#include "plugin/colour.h"
+
+// --- the table ---
+
+bool proxies_are_framed(const options *o) { return o->proxies && pattern_is(o->proxies) && access(o->proxies, R_OK) != 0; }
+
+static bool add(run_files *f, run_file file, error *e)
+{
+    if (!file.path) return true;
+    run_file *grown = mem_grow(f->list, (size_t)f->count + 1, sizeof *grown, e);
+    if (!grown) return false;
+    f->list = grown;
+    if (!file.every) file.every = 1;
+    f->list[f->count++] = file;
+    return true;
+}
+
+static bool add_materials(const options *o, run_files *f, error *e)
+{
+    error ignored = {0};
+    if (!o->mesh || !mesh_list_libraries(o->mesh, &f->owned, &f->owned_count, &ignored))
+        return ignored.code != ERR_MEMORY || err_set(e, ERR_MEMORY, o->mesh, NULL, "%s", ignored.message);
+    for (int i = 0; i < f->owned_count; i++)
+        if (!add(f, (run_file){.what = "a material file of --mesh", .path = f->owned[i], .decides = true}, e)) return false;
+    return true;
+}
+
+bool run_files_list(const options *o, run_files *out, error *e)
+{
+    bool many = batch_is(o);
+    *out = (run_files){0};
+    bool ok = true;
+    for (int i = 0; ok && i < o->input_count; i++)
+        ok = add(out, (run_file){"the input", o->inputs[i], false, many && pattern_is(o->inputs[i]), true, 1}, e);
+    const run_file others[] = {
+        {"--env", o->env, false, false, true, 1},
+        {"--camera", o->camera_file, false, false, true, 1},
+        {"--proxies", o->proxies, false, proxies_are_framed(o), true, 1},
+        {"--mesh", o->mesh, false, false, true, 1},
+        {"the OpenColorIO config", colour_config(o->ocio), false, false, o->env_colorspace || o->albedo_colorspace, 1},
+        {"the output", o->output, true, many, false, 1},
+        {"the preview", o->preview, true, many, false, many ? o->preview_every : 1},
+        {"the report", o->report, true, many && o->report && pattern_is(o->report), false, 1},
+    };
+    for (size_t i = 0; ok && i < sizeof others / sizeof *others; i++) ok = add(out, others[i], e);
+    ok = ok && add_materials(o, out, e);
+    if (!ok) run_files_free(out);
+    return ok;
+}
+
+void run_files_free(run_files *files)
+{
+    for (int i = 0; i < files->owned_count; i++) free(files->owned[i]);
+    free(files->owned);
+    free(files->list);
+    *files = (run_files){0};
+}
+
+bool run_file_path(const run_file *file, int frame, char *path, size_t size)
+{
+    if (frame % file->every != 0) return false;
+    if (file->framed) return pattern_path(file->path, frame, path, size);
+    return (size_t)snprintf(path, size, "%s", file->path) < size;
+}
+
+// --- which are the same ---
+
+// An existing file is its device and inode; one that is still to be made is its folder and its name there.
+typedef struct identity {
+    uint64_t device, inode;
+    digest name; // zero for a file that exists
+    int file, frame;
+} identity;
+
+static identity identify(const char *path)
+{
+    identity id = {0};
+    struct stat s;
+    char folder[FILE_PATH] = ".";
+    if (stat(path, &s) == 0) return (identity){.device = s.st_dev, .inode = s.st_ino};
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    if (slash) snprintf(folder, sizeof folder, "%.*s", (int)(slash - path) + 1, path);
+    if (stat(folder, &s) == 0)
+        id = (identity){.device = s.st_dev, .inode = s.st_ino};
+    else
+        name = path;
+    id.name = digest_bytes(name, strlen(name));
+    return id;
+}
+
+static int compare(const identity *x, const identity *y)
+{
+    if (x->device != y->device) return x->device < y->device ? -1 : 1;
+    if (x->inode != y->inode) return x->inode < y->inode ? -1 : 1;
+    return memcmp(&x->name, &y->name, sizeof x->name);
+}
+
+// Of equal files the order of the table stands.
+static int by_identity(const void *a, const void *b)
+{
+    const identity *x = a, *y = b;
+    int order = compare(x, y);
+    if (order) return order;
+    if (x->file != y->file) return x->file < y->file ? -1 : 1;
+    return (x->frame > y->frame) - (x->frame < y->frame);
+}
+
+static size_t identify_all(const run_files *files, const int *frames, int frame_count, identity *out)
+{
+    char path[FILE_PATH];
+    size_t n = 0;
+    for (int f = 0; f < files->count; f++) {
+        int count = files->list[f].framed ? frame_count : frame_count > 0;
+        for (int i = 0; i < count; i++) {
+            if (!run_file_path(&files->list[f], files->list[f].framed ? frames[i] : 0, path, sizeof path)) continue;
+            out[n] = identify(path);
+            out[n].file = f, out[n].frame = frames[i];
+            n++;
+        }
+    }
+    return n;
+}
+
+static bool refuse(const run_files *files, const identity *same, const identity *target, error *e)
+{
+    const run_file *written = &files->list[target->file], *other = &files->list[same->file];
+    char path[FILE_PATH] = "", frame[32] = "";
+    run_file_path(written, written->framed ? target->frame : 0, path, sizeof path);
+    if (written->framed) snprintf(frame, sizeof frame, " of frame %d", target->frame);
+    return err_set(e, ERR_USAGE, path, NULL, "%s%s and %s are the same file; name another, so that nothing is lost", written->what,
+                   frame, other->what);
+}
+
+bool run_files_check(const run_files *files, const int *frames, int frame_count, error *e)
+{
+    const identity *worst = NULL, *as = NULL; // of the lowest frame, so that the message does not change from run to run
+    identity *all = mem_zero((size_t)files->count * (size_t)frame_count + 1, sizeof *all, e);
+    if (!all) return false;
+    size_t n = identify_all(files, frames, frame_count, all);
+    qsort(all, n, sizeof *all, by_identity);
+    for (size_t first = 0, target = 0, i = 0; i < n; i++) {
+        if (compare(&all[first], &all[i]) != 0) first = target = i;
+        if (files->list[all[i].file].target) target = i;
+        if (i == first || !files->list[all[target].file].target || (worst && worst->frame <= all[target].frame)) continue;
+        worst = &all[target];
+        as = &all[target == i ? first : i];
+    }
+    bool ok = !worst || refuse(files, as, worst, e);
+    free(all);
+    return ok;
+}

@@ -1,0 +1,43 @@
+// The files of a run: one table of what is read and what is written, in every frame or in all of them.
+#ifndef SSDO_PIPELINE_FILES_H
+#define SSDO_PIPELINE_FILES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "cli/options.h"
+
+enum { FILE_PATH = 4096 };
+
+typedef struct run_file {
+    const char *what; // as messages call it: "the output", "--env"
+    const char *path; // as given: for a framed file, a pattern. Borrowed from the options, or one of `owned`
+    bool target;      // it is written
+    bool framed;      // it is another file in each frame
+    bool decides;     // the pixels of the output depend on its content
+    int every;        // of frames whose number is a multiple of this
+} run_file;
+
+typedef struct run_files {
+    run_file *list; // owned
+    int count;
+    char **owned;
+    int owned_count;
+} run_files;
+
+// Lists inputs, environment, camera, proxies, mesh and its material files, OpenColorIO config, output, preview and report. A mesh
+// that cannot be read has no material files here; reading it says why.
+bool run_files_list(const options *o, run_files *out, error *e);
+void run_files_free(run_files *files);
+
+// The file's path in a frame. False if it has none there, or one that does not fit.
+bool run_file_path(const run_file *file, int frame, char *path, size_t size);
+
+// Compares, for all frames at once, every file that will be written with every other file, through links and under whatever names:
+// ERR_USAGE if what is written to is read, or written twice. frames: of a sequence; a single frame has one, of any number.
+bool run_files_check(const run_files *files, const int *frames, int frame_count, error *e);
+
+// True if --proxies names a file a frame.
+bool proxies_are_framed(const options *o);
+
+#endif
