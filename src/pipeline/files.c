@@ -141,8 +141,8 @@ static bool refuse(const run_files *files, const identity *same, const identity 
     char path[FILE_PATH] = "", frame[32] = "";
     run_file_path(written, written->framed ? target->frame : 0, path, sizeof path);
     if (written->framed) snprintf(frame, sizeof frame, " of frame %d", target->frame);
-    return err_set(e, ERR_USAGE, path, NULL, "%s%s and %s are the same file; name another, so that nothing is lost", written->what,
-                   frame, other->what);
+    return err_set(e, ERR_USAGE, path, NULL, "%s%s and %s are the same file; name another, so that nothing is lost",
+                   written->what, frame, other->what);
 }
 
 bool run_files_check(const run_files *files, const int *frames, int frame_count, error *e)

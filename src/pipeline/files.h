@@ -33,8 +33,8 @@ void run_files_free(run_files *files);
 // The file's path in a frame. False if it has none there, or one that does not fit.
 bool run_file_path(const run_file *file, int frame, char *path, size_t size);
 
-// Compares, for all frames at once, every file that will be written with every other file, through links and under whatever names:
-// ERR_USAGE if what is written to is read, or written twice. frames: of a sequence; a single frame has one, of any number.
+// Compares, for all frames at once, every file that will be written with every other file, through links and under whatever
+// names: ERR_USAGE if what is written to is read, or written twice. frames: of a sequence; a single frame has one, of any number.
 bool run_files_check(const run_files *files, const int *frames, int frame_count, error *e);
 
 // True if --proxies names a file a frame.
