@@ -1,10 +1,9 @@
 // The format: OpenEXR File Layout, https://openexr.com/en/latest/OpenEXRFileLayout.html
 #include <errno.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
+#include "base/infile.h"
 #include "exr/internal.h"
 
 enum {
@@ -18,10 +17,13 @@ enum {
 };
 
 typedef struct walker {
-    FILE *f;
+    int fd;
     const char *path;
     uint64_t size, at;
     error *e;
+    uint8_t page[4096]; // the bytes from `first` on that were read last
+    uint64_t first;
+    size_t filled;
 } walker;
 
 typedef struct attribute {
@@ -56,9 +58,23 @@ static bool fail(walker *w, const char *what)
     return err_set(w->e, ERR_INPUT, w->path, NULL, "%s; render it or copy it again", what);
 }
 
+static bool turn_page(walker *w)
+{
+    uint64_t left = w->size - w->at;
+    w->first = w->at;
+    w->filled = left < sizeof w->page ? (size_t)left : sizeof w->page;
+    return infile_read_at(w->fd, w->page, w->filled, w->first) == w->filled;
+}
+
+// At most a page of bytes.
 static bool take(walker *w, void *to, size_t n)
 {
-    if (w->size - w->at < n || fread(to, 1, n, w->f) != n) return fail(w, "is truncated: its header ends early");
+    if (w->size - w->at < n) return fail(w, "is truncated: its header ends early");
+    bool there = w->at >= w->first && w->at + n <= w->first + w->filled;
+    if (!there && !turn_page(w))
+        return err_set(w->e, ERR_INPUT, w->path, NULL, "cannot be read: %s",
+                       errno ? strerror(errno) : "it became shorter meanwhile");
+    memcpy(to, w->page + (w->at - w->first), n);
     w->at += n;
     return true;
 }
@@ -83,7 +99,6 @@ static bool take_name(walker *w, char name[EXR_MAX_NAME + 1])
 static bool skip(walker *w, uint64_t n)
 {
     if (w->size - w->at < n) return fail(w, "is truncated: its header ends early");
-    if (fseeko(w->f, (off_t)n, SEEK_CUR) != 0) return fail(w, "cannot be read to the end of its header");
     w->at += n;
     return true;
 }
@@ -180,21 +195,8 @@ static bool check_stream(walker *w)
     return check_parts(w, flags);
 }
 
-bool exr_check_header(const char *path, error *e)
+bool exr_check_header(const char *path, int fd, size_t size, error *e)
 {
-    struct stat st;
-    walker w = {.path = path, .e = e};
-    w.f = fopen(path, "rbe");
-    if (!w.f)
-        return err_set(e, ERR_INPUT, path, NULL, errno == ENOENT ? "does not exist; check the name" : "cannot be opened: %s",
-                       strerror(errno));
-    bool ok;
-    if (fstat(fileno(w.f), &st) != 0 || !S_ISREG(st.st_mode)) {
-        ok = err_set(e, ERR_INPUT, path, NULL, "is not a regular file; name an OpenEXR file");
-    } else {
-        w.size = (uint64_t)st.st_size;
-        ok = check_stream(&w);
-    }
-    fclose(w.f);
-    return ok;
+    walker w = {.fd = fd, .path = path, .size = size, .e = e};
+    return check_stream(&w);
 }

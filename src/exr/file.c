@@ -1,8 +1,11 @@
 #include "exr/file.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "base/infile.h"
 #include "base/mem.h"
 #include "exr/internal.h"
 
@@ -14,7 +17,7 @@ static void keep_message(exr_const_context_t context, exr_result_t code, const c
     void *user = NULL;
     // Safe only for reading: a writing context would lock itself a second time here.
     if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user) return;
-    core_log *log = user;
+    core_log *log = &((exr_reader *)user)->log;
     pthread_mutex_lock(&log->lock);
     if (log->armed && !log->text[0]) {
         strncpy(log->text, message, sizeof log->text - 1);
@@ -62,11 +65,29 @@ static void *core_allocate(size_t size)
 }
 static void core_free(void *p) { free(p); }
 
+static int64_t read_bytes(exr_const_context_t context, void *user, void *buffer, uint64_t size, uint64_t offset,
+                          exr_stream_error_func_ptr_t report)
+{
+    const exr_reader *r = user;
+    size_t got = infile_read_at(r->fd, buffer, size, offset);
+    if (!errno) return (int64_t)got; // the library knows what it needs
+    report(context, EXR_ERR_READ_IO, "%s", strerror(errno));
+    return -1;
+}
+
+static int64_t file_size(exr_const_context_t context, void *user)
+{
+    (void)context;
+    return (int64_t)((const exr_reader *)user)->size;
+}
+
 static bool open_core(exr_reader *r, error *e)
 {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.error_handler_fn = keep_message;
-    init.user_data = &r->log;
+    init.user_data = r;
+    init.read_fn = read_bytes;
+    init.size_fn = file_size;
     init.alloc_fn = core_allocate;
     init.free_fn = core_free;
     init.max_image_width = init.max_image_height = EXR_MAX_SIDE;
@@ -188,14 +209,14 @@ static bool fill_part(exr_file *file, int index, error *e)
 bool exr_file_open(const char *path, exr_file **out, error *e)
 {
     *out = NULL;
-    if (!exr_check_header(path, e)) return false;
     exr_reader *r = mem_zero(1, sizeof *r, e);
     if (!r) return false;
     pthread_mutex_init(&r->log.lock, NULL);
     exr_file *file = &r->file;
     int count = 0;
+    r->fd = infile_open(path, (infile_kind){NULL, ERR_INPUT}, &r->size, e);
     file->path = mem_string(path, e);
-    if (!file->path || !open_core(r, e)) goto fail;
+    if (r->fd < 0 || !file->path || !exr_check_header(path, r->fd, r->size, e) || !open_core(r, e)) goto fail;
     exr_get_count(file->core, &count);
     file->parts = mem_zero((size_t)count, sizeof *file->parts, e);
     if (!file->parts) goto fail;
@@ -236,6 +257,7 @@ void exr_file_close(exr_file *file)
     exr_context_t core = file->core;
     if (core) exr_finish(&core);
     exr_reader *r = (exr_reader *)file;
+    if (r->fd >= 0) close(r->fd);
     pthread_mutex_destroy(&r->log.lock);
     free(r);
 }

@@ -33,6 +33,8 @@ typedef struct core_log {
 typedef struct exr_reader {
     exr_file file;
     core_log log;
+    int fd; // what was checked is what is read, whatever the path names meanwhile
+    size_t size;
 } exr_reader;
 
 void core_log_arm(core_log *log);
@@ -40,10 +42,10 @@ void core_log_arm(core_log *log);
 // library's own words. Returns false.
 bool core_log_report(core_log *log, exr_result_t code, error_code kind, const char *path, const char *what, error *e);
 
-// Walks the headers of a file without the library: a readable regular file, the magic number, version and flags, every name and
+// Walks the headers of an open file of `size` bytes without the library: the magic number, version and flags, every name and
 // size within its bounds and the file, the required attributes there and of their type, no deep part. Fills e and returns false
 // otherwise. What passes cannot lead the library's parser astray.
-bool exr_check_header(const char *path, error *e);
+bool exr_check_header(const char *path, int fd, size_t size, error *e);
 
 // Fills the views of a part whose channels are known, and the view of each channel.
 bool exr_fill_views(const exr_file *file, int index, exr_part *p, error *e);

@@ -1,7 +1,8 @@
 // The camera from a JSON file.
 #include <json-c/json.h>
-#include <string.h>
+#include <math.h>
 
+#include "base/json_read.h"
 #include "gbuffer/camera.h"
 
 typedef struct source {
@@ -12,43 +13,34 @@ typedef struct source {
 
 static bool refuse(const source *s, const char *what) { return err_set(s->e, ERR_USAGE, s->path, NULL, "%s", what); }
 
-static bool number(struct json_object *o, double *out)
-{
-    if (!json_object_is_type(o, json_type_double) && !json_object_is_type(o, json_type_int)) return false;
-    *out = json_object_get_double(o);
-    return isfinite(*out);
-}
-
-static bool numbers(struct json_object *array, size_t count, double *out)
-{
-    if (!json_object_is_type(array, json_type_array) || json_object_array_length(array) != count) return false;
-    for (size_t i = 0; i < count; i++)
-        if (!number(json_object_array_get_idx(array, i), &out[i])) return false;
-    return true;
-}
-
-static bool orthonormal(const double m[4][4])
+// A mirror image of the scene has such axes too; only the determinant tells.
+static bool is_rotation(const double m[4][4])
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j <= i; j++) {
             double dot = m[0][i] * m[0][j] + m[1][i] * m[1][j] + m[2][i] * m[2][j];
             if (!(fabs(dot - (i == j ? 1.0 : 0.0)) < 1e-3)) return false;
         }
-    return true;
+    mat3 axes;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) axes.m[r][c] = m[r][c];
+    return m3_det(axes) > 0.0;
 }
 
 // Blender's and OpenGL's camera axes (y up, z backwards) to ours (y down, z forward).
 static bool read_pose(const source *s, camera *out)
 {
     static const char what[] =
-        "\"world_from_camera\" must be four rows of four numbers: a rotation and a position, without scale";
+        "\"world_from_camera\" must be four rows of four numbers: a rotation and a position, without scale or "
+        "mirroring, and 0 0 0 1";
     struct json_object *rows;
     double m[4][4];
     if (!json_object_object_get_ex(s->root, "world_from_camera", &rows)) return true;
     if (!json_object_is_type(rows, json_type_array) || json_object_array_length(rows) != 4) return refuse(s, what);
     for (size_t r = 0; r < 4; r++)
-        if (!numbers(json_object_array_get_idx(rows, r), 4, m[r])) return refuse(s, what);
-    if (!orthonormal(m)) return refuse(s, what);
+        if (!json_read_numbers(json_object_array_get_idx(rows, r), 4, m[r])) return refuse(s, what);
+    if (m[3][0] != 0.0 || m[3][1] != 0.0 || m[3][2] != 0.0 || m[3][3] != 1.0) return refuse(s, what);
+    if (!is_rotation(m)) return refuse(s, what);
     for (int r = 0; r < 3; r++) {
         out->world_from_camera.m[r][0] = m[r][0];
         out->world_from_camera.m[r][1] = -m[r][1];
@@ -69,19 +61,22 @@ static bool read_lens(const source *s, box2 data, box2 display, double pixel_asp
         return refuse(s, "a camera file holds exactly one of \"fov\", \"focal_px\" and \"ortho_width\"");
     double v[2];
     if (has_fov) {
-        if (!number(fov, v) || !(v[0] > 0.0 && v[0] < 180.0)) return refuse(s, "\"fov\" must be between 0 and 180 degrees");
+        if (!json_read_number(fov, v) || !(v[0] > 0.0 && v[0] < 180.0))
+            return refuse(s, "\"fov\" must be between 0 and 180 degrees");
         camera_from_fov(v[0], data, display, pixel_aspect, out);
     } else if (has_ortho) {
-        if (!number(ortho, v) || !(v[0] > 0.0)) return refuse(s, "\"ortho_width\" must be a positive number of scene units");
+        if (!json_read_number(ortho, v) || !(v[0] > 0.0))
+            return refuse(s, "\"ortho_width\" must be a positive number of scene units");
         camera_from_ortho(v[0], data, display, pixel_aspect, out);
     } else {
-        if (!numbers(focal, 2, v) || !(v[0] > 0.0 && v[1] > 0.0)) return refuse(s, "\"focal_px\" must be two positive numbers");
+        if (!json_read_numbers(focal, 2, v) || !(v[0] > 0.0 && v[1] > 0.0))
+            return refuse(s, "\"focal_px\" must be two positive numbers");
         camera_from_fov(90.0, data, display, pixel_aspect, out);
         out->fx = v[0], out->fy = v[1];
     }
     struct json_object *principal;
     if (json_object_object_get_ex(s->root, "principal", &principal)) {
-        if (!numbers(principal, 2, v)) return refuse(s, "\"principal\" must be two numbers");
+        if (!json_read_numbers(principal, 2, v)) return refuse(s, "\"principal\" must be two numbers");
         out->cx = v[0] + display.x0 - data.x0, out->cy = v[1] + display.y0 - data.y0;
     }
     return true;
@@ -89,15 +84,9 @@ static bool read_lens(const source *s, box2 data, box2 display, double pixel_asp
 
 bool camera_from_json(const char *path, box2 data, box2 display, double pixel_aspect, camera *out, error *e)
 {
-    source s = {.path = path, .root = json_object_from_file(path), .e = e};
-    if (!s.root) {
-        const char *why = json_util_get_last_err(); // ends in a newline
-        int length = why ? (int)strcspn(why, "\n") : 0;
-        return err_set(e, ERR_USAGE, path, NULL, "the camera file cannot be read as JSON%s%.*s", why ? ": " : "",
-                       length < 200 ? length : 200, why ? why : "");
-    }
-    bool good = json_object_is_type(s.root, json_type_object) || refuse(&s, "the camera file must hold one JSON object");
-    good = good && read_lens(&s, data, display, pixel_aspect, out) && read_pose(&s, out);
+    source s = {.path = path, .root = json_read_object(path, "the camera file", e), .e = e};
+    if (!s.root) return false;
+    bool good = read_lens(&s, data, display, pixel_aspect, out) && read_pose(&s, out);
     json_object_put(s.root);
     return good;
 }

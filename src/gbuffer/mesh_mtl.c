@@ -1,25 +1,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
+#include "base/infile.h"
 #include "base/mem.h"
 #include "gbuffer/mesh.h"
 
 char *mesh_read_text(const char *path, error *e)
 {
-    struct stat s;
-    FILE *f = fopen(path, "rb");
-    if (!f || fstat(fileno(f), &s) != 0 || !S_ISREG(s.st_mode)) {
-        if (f) fclose(f);
-        err_set(e, ERR_INPUT, path, NULL, "cannot be read; check the path and its permissions");
-        return NULL;
-    }
-    char *text = mem_grow(NULL, (size_t)s.st_size + 1, 1, e);
-    size_t n = text ? fread(text, 1, (size_t)s.st_size, f) : 0;
-    if (text) text[n] = 0;
-    fclose(f);
-    return text;
+    return infile_text(path, (infile_kind){NULL, ERR_INPUT}, mem_available(), NULL, e);
 }
 
 static bool blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }

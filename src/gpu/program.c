@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/infile.h"
 #include "base/mem.h"
 #include "gpu/cache.h"
 #include "gpu/gpu.h"
@@ -43,17 +44,10 @@ static char *read_file(const char *dir, const char *name, error *e)
 {
     char path[1024];
     snprintf(path, sizeof path, "%s/%s", dir, name);
-    FILE *f = fopen(path, "rb");
-    if (!f) {
-        err_set(e, ERR_GL, path, NULL, "this shader cannot be read; SSDO_SHADER_DIR must name the project's shaders folder");
-        return NULL;
-    }
-    fseek(f, 0, SEEK_END);
-    long size = ftell(f);
-    rewind(f);
-    char *text = size >= 0 ? mem_zero((size_t)size + 1, 1, e) : NULL;
-    if (text && fread(text, 1, (size_t)size, f) != (size_t)size) text[0] = 0;
-    fclose(f);
+    error why = {0};
+    char *text = infile_text(path, (infile_kind){NULL, ERR_GL}, 1 << 20, NULL, &why);
+    if (!text)
+        err_set(e, why.code, path, NULL, "this shader cannot be read; SSDO_SHADER_DIR must name the project's shaders folder");
     return text;
 }
 

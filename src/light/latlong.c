@@ -1,13 +1,13 @@
 #include "light/latlong.h"
 
-#include <errno.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 #include "base/half.h"
+#include "base/infile.h"
 #include "base/mem.h"
 #include "exr/file.h"
 #include "light/environment.h"
@@ -18,12 +18,12 @@ static bool is_exr(const char *path, bool *exr, error *e)
 {
     static const uint8_t magic[4] = {0x76, 0x2f, 0x31, 0x01};
     uint8_t first[4] = {0};
-    FILE *f = fopen(path, "rb");
-    if (!f) return err_set(e, ERR_INPUT, path, NULL, "the environment map cannot be opened: %s", strerror(errno));
-    size_t n = fread(first, 1, sizeof first, f);
-    fclose(f);
-    if (n == 0) return err_set(e, ERR_INPUT, path, NULL, "the environment map is empty or not a file; give a lat-long image");
-    *exr = n == sizeof first && memcmp(first, magic, sizeof magic) == 0;
+    int fd = infile_open(path, (infile_kind){"the environment map", ERR_INPUT}, NULL, e);
+    if (fd < 0) return false;
+    size_t n = infile_read_at(fd, first, sizeof first, 0);
+    close(fd);
+    if (n == 0) return err_set(e, ERR_INPUT, path, NULL, "the environment map is empty; give a lat-long image");
+    *exr = memcmp(first, magic, sizeof magic) == 0;
     return true;
 }
 

@@ -1,35 +1,21 @@
 #include "light/proxies.h"
 
 #include <json-c/json.h>
+#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "base/json_read.h"
 #include "base/mem.h"
 
 static const double ALBEDO = 0.5; // of a sphere that names none
-
-static bool number(struct json_object *o, double *out)
-{
-    if (!json_object_is_type(o, json_type_double) && !json_object_is_type(o, json_type_int)) return false;
-    *out = json_object_get_double(o);
-    return isfinite(*out);
-}
-
-static bool three(struct json_object *array, double out[3])
-{
-    if (!json_object_is_type(array, json_type_array) || json_object_array_length(array) != 3) return false;
-    for (size_t i = 0; i < 3; i++)
-        if (!number(json_object_array_get_idx(array, i), &out[i])) return false;
-    return true;
-}
 
 static bool read_albedo(struct json_object *o, double out[3])
 {
     out[0] = out[1] = out[2] = ALBEDO;
     if (!o) return true;
-    if (number(o, &out[0]))
+    if (json_read_number(o, &out[0]))
         out[1] = out[2] = out[0];
-    else if (!three(o, out))
+    else if (!json_read_numbers(o, 3, out))
         return false;
     return fmin(out[0], fmin(out[1], out[2])) >= 0.0 && fmax(out[0], fmax(out[1], out[2])) <= 1.0;
 }
@@ -43,8 +29,8 @@ static const char *read_sphere(struct json_object *o, sphere_proxy *s)
     json_object_object_get_ex(o, "centre", &centre);
     json_object_object_get_ex(o, "radius", &radius);
     json_object_object_get_ex(o, "albedo", &albedo);
-    if (!three(centre, c)) return "needs a \"centre\" of three numbers";
-    if (!number(radius, &s->radius) || !(s->radius > 0.0)) return "needs a \"radius\" above 0";
+    if (!json_read_numbers(centre, 3, c)) return "needs a \"centre\" of three numbers";
+    if (!json_read_number(radius, &s->radius) || !(s->radius > 0.0)) return "needs a \"radius\" above 0";
     if (!read_albedo(albedo, s->albedo)) return "has an \"albedo\" that is neither a number nor three numbers from 0 to 1";
     s->centre = v3(c[0], c[1], c[2]);
     return NULL;
@@ -53,14 +39,9 @@ static const char *read_sphere(struct json_object *o, sphere_proxy *s)
 bool proxies_load(const char *path, proxy_set *out, error *e)
 {
     *out = (proxy_set){0};
-    struct json_object *list = NULL, *root = json_object_from_file(path);
-    if (!root) {
-        const char *why = json_util_get_last_err(); // ends in a newline
-        return err_set(e, ERR_USAGE, path, NULL, "the proxies cannot be read as JSON%s%.*s", why ? ": " : "",
-                       why ? (int)strcspn(why, "\n") : 0, why ? why : "");
-    }
-    bool ok = json_object_is_type(root, json_type_object) && json_object_object_get_ex(root, "spheres", &list) &&
-              json_object_is_type(list, json_type_array);
+    struct json_object *list = NULL, *root = json_read_object(path, "the proxies file", e);
+    if (!root) return false;
+    bool ok = json_object_object_get_ex(root, "spheres", &list) && json_object_is_type(list, json_type_array);
     size_t n = ok ? json_object_array_length(list) : 0;
     if (!ok)
         err_set(e, ERR_USAGE, path, NULL, "a proxies file holds one object with a list named \"spheres\"");

@@ -1,7 +1,9 @@
 #include "plugin/colour.h"
 
 #include <stdlib.h>
+#include <string.h>
 
+#include "base/infile.h"
 #include "plugin/colour_abi.h"
 #include "plugin/module.h"
 
@@ -13,6 +15,12 @@ const char *colour_config(const char *config)
     return path && *path ? path : NULL;
 }
 
+// OpenColorIO knows configs without a file: ocio://default.
+static bool check_config(const char *path, error *e)
+{
+    return strstr(path, "://") || infile_check(path, (infile_kind){"the OpenColorIO config", ERR_INPUT}, e);
+}
+
 bool colour_to_scene_linear(const char *config, const char *from, float *rgb, size_t n, error *e)
 {
     char message[MODULE_MESSAGE] = "";
@@ -20,6 +28,7 @@ bool colour_to_scene_linear(const char *config, const char *from, float *rgb, si
     if (!path)
         return err_set(e, ERR_USAGE, NULL, NULL,
                        "colour space '%s' needs an OpenColorIO config; name one with --ocio or in $OCIO", from);
+    if (!check_config(path, e)) return false;
     colour_to_linear_fn convert =
         (colour_to_linear_fn)module_function(&colour, "ssdo_colour_to_linear", "converting colours", ERR_INPUT, path, e);
     if (!convert) return false;
@@ -34,6 +43,7 @@ bool colour_to_display(const char *config, const char *display, const char *view
     if (!path)
         return err_set(e, ERR_USAGE, NULL, NULL,
                        "a display and view for previews need an OpenColorIO config; name one with --ocio or in $OCIO");
+    if (!check_config(path, e)) return false;
     colour_to_display_fn convert =
         (colour_to_display_fn)module_function(&colour, "ssdo_colour_to_display", "converting colours", ERR_INPUT, path, e);
     if (!convert) return false;
