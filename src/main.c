@@ -1,13 +1,15 @@
 // argv to job.
 
+#include <errno.h>
 #include <locale.h>
-#include <signal.h>
 #include <stdio.h>
-#include <unistd.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "base/outfile.h"
+#include "base/text.h"
 #include "cli/options.h"
+#include "cli/signals.h"
 #include "pipeline/batch.h"
 #include "pipeline/complete.h"
 #include "pipeline/explain.h"
@@ -17,44 +19,23 @@
 #include "pipeline/report.h"
 #include "pipeline/resume.h"
 
-// The signal that asked us to stop: frames are dropped, but for one that is being written. SIGINT after that ends the process at
-// once; a farm repeats SIGTERM and means the same.
-static volatile int stop_signal;
-
-static void on_signal(int number)
-{
-    if (stop_signal && number == SIGINT) {
-        outfile_remove_all();
-        _exit(128 + number);
-    }
-    stop_signal = number;
-}
-
-static void catch_signals(void)
-{
-    signal(SIGPIPE, SIG_IGN);
-    signal(SIGINT, on_signal);
-    signal(SIGTERM, on_signal);
-    if (signal(SIGHUP, on_signal) == SIG_IGN) signal(SIGHUP, SIG_IGN); // nohup
-}
-
 static int fail(const options *o, const error *e)
 {
     char text[1600];
     err_format(e, text, sizeof text);
+    text_one_line(text);
     fprintf(stderr, "ssdo-filter: %s\n", text);
     progress_fail(o->progress, text);
     return (int)e->code;
 }
 
-static int list_devices(void)
+static void list_devices(void)
 {
     gpu_device list[32];
     int n = gpu_list_devices(list, 32);
     for (int i = 0; i < n; i++) printf("%d  %s\n", i, list[i].description);
     if (gpu_missing_device()) printf("note: %s\n", gpu_missing_device());
     if (n == 0) puts("no EGL devices; the surfaceless platform may still work");
-    return 0;
 }
 
 static bool run_frame(job *j, error *e)
@@ -87,7 +68,7 @@ static bool check_targets(const options *o, error *e)
 }
 
 // Nothing is opened before it is sure that nothing will be lost; a sequence's frames are listed and compared by the batch.
-static bool run_on(const options *o, const run_files *files, log_t *log, error *e)
+static bool run_on(const options *o, const run_files *files, const volatile int *stop_signal, log_t *log, error *e)
 {
     job j;
     if (!batch_is(o) && !run_files_check(files, (const int[]){0}, 1, e)) return false;
@@ -95,7 +76,7 @@ static bool run_on(const options *o, const run_files *files, log_t *log, error *
     bool alone = !batch_is(o) && !o->skip_existing;
     if (alone) job_init(&j, o, log);
     bool ok = (alone || job_open(&j, o, log, e)) && check_targets(o, e);
-    j.stop = &stop_signal;
+    j.stop = stop_signal;
     j.no_floats = !o->preview;
     j.files = files;
     if (ok) ok = batch_is(o) ? batch_run(&j, e) : run_frame(&j, e);
@@ -103,12 +84,37 @@ static bool run_on(const options *o, const run_files *files, log_t *log, error *
     return ok;
 }
 
-static bool run(const options *o, log_t *log, error *e)
+static bool run(const options *o, const volatile int *stop_signal, log_t *log, error *e)
 {
     run_files files;
-    bool ok = run_files_list(o, &files, e) && run_on(o, &files, log, e);
+    bool ok = run_files_list(o, &files, e) && run_on(o, &files, stop_signal, log, e);
     run_files_free(&files);
     return ok;
+}
+
+// What is asked for is text on standard output, not a frame. *ok: it could be told.
+static bool tell(const options *o, bool *ok, error *e)
+{
+    if (o->help)
+        options_print_help(stdout);
+    else if (o->version)
+        puts("ssdo-filter " SSDO_VERSION);
+    else if (o->completion)
+        complete_write(stdout, o->completion);
+    else if (o->list_devices)
+        list_devices();
+    else if (o->explain)
+        *ok = explain_write(o, stdout, e);
+    else
+        return false;
+    return true;
+}
+
+// A text that did not arrive was not told.
+static bool finish_output(error *e)
+{
+    if (fflush(stdout) == 0 && !ferror(stdout)) return true;
+    return err_set(e, ERR_OUTPUT, NULL, NULL, "cannot write to standard output: %s", strerror(errno));
 }
 
 int main(int argc, char **argv)
@@ -117,27 +123,15 @@ int main(int argc, char **argv)
     options o;
     mem_set_up();
     setlocale(LC_NUMERIC, "C"); // whatever LC_ALL says
-    catch_signals();
+    const volatile int *stop_signal = signals_catch();
     options_defaults(&o);
     if (!options_parse(argc, argv, &o, &e)) return fail(&o, &e);
-    if (o.help) {
-        options_print_help(stdout);
-        return 0;
-    }
-    if (o.version) {
-        puts("ssdo-filter " SSDO_VERSION);
-        return 0;
-    }
-    if (o.completion) {
-        complete_write(stdout, o.completion);
-        return 0;
-    }
-    if (o.list_devices) return list_devices();
-    if (o.explain) return explain_write(&o, stdout, &e) ? 0 : fail(&o, &e);
+    bool ok = true, told = tell(&o, &ok, &e);
+    if (told) return finish_output(&e) && ok ? 0 : fail(&o, &e);
     log_t log;
     log_init(&log, o.quiet ? LOG_QUIET : o.verbose ? LOG_INFO : LOG_WARN);
-    bool ok = run(&o, &log, &e);
+    ok = run(&o, stop_signal, &log, &e);
     log_free(&log);
-    if (stop_signal) return 128 + stop_signal;
+    if (*stop_signal) return 128 + *stop_signal;
     return ok ? 0 : fail(&o, &e);
 }

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
+
 void log_init(log_t *log, log_level level)
 {
     *log = (log_t){.level = level};
@@ -49,8 +51,9 @@ void log_wipe(log_t *log)
     log->bar = false;
 }
 
-static void print_line(log_t *log, const char *kind, const char *text)
+static void print_line(log_t *log, const char *kind, char *text)
 {
+    text_one_line(text);
     log_wipe(log);
     fprintf(stderr, "ssdo-filter: %s%s\n", kind, text);
 }

@@ -189,15 +189,19 @@ bool outfile_begin(const char *path, outfile *out, error *e)
         free(out->temp);
         out->temp = temp_name(out->target, beginning, e);
         if (!out->temp) goto fail;
+        track(out->temp); // before it is there: a signal may come at any moment
         out->fd = open(out->temp, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (out->fd < 0 && errno != EEXIST) break;
+        if (out->fd >= 0) break;
+        int code = errno;
+        untrack(out->temp);
+        errno = code;
+        if (code != EEXIST) break;
     }
     if (out->fd < 0) {
         report_folder(path, out->target, errno, e);
         goto fail;
     }
     if (mode) (void)!fchmod(out->fd, mode);
-    track(out->temp);
     return true;
 
 fail:

@@ -7,6 +7,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/text.h"
+
 enum { BAR_WIDTH = 30, PLAIN_STEP = 5 };
 
 static double seconds(void)
@@ -93,6 +95,7 @@ void progress_line(progress *p, const char *format, ...)
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
+    text_one_line(text);
     pthread_mutex_lock(&p->log->lock);
     log_wipe(p->log);
     printf("%s%s\n", p->form == PROGRESS_OPENJD ? "openjd_status: " : "", text);

@@ -73,6 +73,7 @@ static bool run_half(pass_context *c, const plan *p, error *e)
     set.blur = (set.blur + 1) / 2; // as wide on the surface as at full size
     bool ok = pass_begin(&small, c->g, &gb, c->env, &set, c->timing, c->log, e);
     if (!ok) goto out;
+    small.tiles.stop = c->tiles.stop;
     small.environment = c->environment;
     small.sunless = c->sunless;
     small.trace = c->trace;

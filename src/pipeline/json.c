@@ -5,10 +5,23 @@
 
 #include "base/mem.h"
 #include "base/outfile.h"
+#include "base/text.h"
 
 void json_put(json_object *o, const char *key, json_object *value) { json_object_object_add(o, key, value); }
 
-void json_put_text(json_object *o, const char *key, const char *s) { json_put(o, key, s ? json_object_new_string(s) : NULL); }
+json_object *json_text(const char *s)
+{
+    if (!s) return NULL;
+    size_t room = text_utf8_room(s);
+    char *text = malloc(room);
+    if (!text) return NULL;
+    text_utf8(s, text, room);
+    json_object *o = json_object_new_string(text);
+    free(text);
+    return o;
+}
+
+void json_put_text(json_object *o, const char *key, const char *s) { json_put(o, key, json_text(s)); }
 
 void json_put_number(json_object *o, const char *key, double v)
 {

@@ -7,8 +7,11 @@
 
 #include "base/error.h"
 
+// A string in UTF-8 whatever `s` holds (base/text.h); NULL becomes null.
+json_object *json_text(const char *s);
+
 void json_put(json_object *o, const char *key, json_object *value);
-void json_put_text(json_object *o, const char *key, const char *s); // NULL becomes null
+void json_put_text(json_object *o, const char *key, const char *s);
 void json_put_number(json_object *o, const char *key, double v);
 // {"stage": name, "wall_ms": .., "cpu_ms": ..}
 json_object *json_time(const char *name, double wall, double cpu);

@@ -188,14 +188,13 @@ static json_object *report_of(const job *j, const frame_result *r, const char *o
     double pixels = (double)r->gb.width * r->gb.height;
     json_put_text(o, "version", SSDO_VERSION);
     json_put_text(o, "input", r->file->path);
-    for (int i = 0; i < r->file->member_count; i++)
-        json_object_array_add(inputs, json_object_new_string(r->file->members[i]->path));
+    for (int i = 0; i < r->file->member_count; i++) json_object_array_add(inputs, json_text(r->file->members[i]->path));
     json_put(o, "inputs", inputs); // where the frame's passes are in several files
     json_put_text(o, "output", output);
     json_put_text(o, "device", j->g.renderer);
     json_put_text(o, "convention", r->resolution.convention);
     json_put(o, "channels", channels_of(r));
-    for (int i = 0; i < r->gb.evidence_count; i++) json_object_array_add(evidence, json_object_new_string(r->gb.evidence[i]));
+    for (int i = 0; i < r->gb.evidence_count; i++) json_object_array_add(evidence, json_text(r->gb.evidence[i]));
     json_put(o, "evidence", evidence);
     json_put(o, "camera", camera_of(r));
     json_put_text(o, "method", r->plan.method->name);
@@ -207,7 +206,7 @@ static json_object *report_of(const job *j, const frame_result *r, const char *o
     json_put_number(o, "off_frame_share", report_off_frame_share(r));
     json_put_number(o, "off_ray_share", r->gb.valid ? (double)r->gb.off_ray / (double)r->gb.valid : 0.0);
     for (int l = 0; l < LAYER_COUNT; l++)
-        if (r->layers[l]) json_object_array_add(layers, json_object_new_string(layer_table[l].name));
+        if (r->layers[l]) json_object_array_add(layers, json_text(layer_table[l].name));
     json_put(o, "layers", layers);
     json_put(o, "planes", planes_of(r)); // camera space: normal . x = offset; share of the surfaces
     json_put(o, "passes", passes_of(r));
@@ -217,7 +216,7 @@ static json_object *report_of(const job *j, const frame_result *r, const char *o
     json_put(o, "programs", programs_of(j));
     json_put(o, "uploads", uploads_of(j, r));
     json_put(o, "clamped_samples", json_object_new_int64((int64_t)r->clamped));
-    for (int i = 0; i < j->log->warning_count; i++) json_object_array_add(warnings, json_object_new_string(j->log->warnings[i]));
+    for (int i = 0; i < j->log->warning_count; i++) json_object_array_add(warnings, json_text(j->log->warnings[i]));
     json_put(o, "warnings", warnings);
     return o;
 }

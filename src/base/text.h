@@ -1,0 +1,18 @@
+// Text that comes from outside (names of files, channels, views) on its way to a log or a report.
+#ifndef SSDO_BASE_TEXT_H
+#define SSDO_BASE_TEXT_H
+
+#include <stddef.h>
+
+// Makes one line of it, in place: control characters, a line's end among them, become '?', so that a name can neither split a
+// line nor forge one for a supervisor that reads them.
+void text_one_line(char *text);
+
+// A copy in UTF-8 of at most size - 1 bytes: every byte that is not part of a character becomes U+FFFD. What does not fit is cut
+// between characters.
+void text_utf8(const char *from, char *to, size_t size);
+
+// The room that text_utf8 needs for the whole of `from`.
+size_t text_utf8_room(const char *from);
+
+#endif
