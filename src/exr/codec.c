@@ -152,6 +152,8 @@ exr_result_t codec_attach_decoder(codec *c, exr_const_context_t core, int part, 
 
 // --- encoding ---
 
+enum { COMPRESSED_ROOM = 1 << 16 }; // beyond the size of what is compressed, an eighth of it besides
+
 // The library holds its lock while this runs, so the packing itself waits until compress_chunk.
 static exr_result_t announce_size(exr_encode_pipeline_t *p)
 {
@@ -181,17 +183,22 @@ static void store_raw(exr_encode_pipeline_t *p)
     p->compressed_bytes = p->packed_bytes;
 }
 
+static exr_result_t take_compressed(exr_encode_pipeline_t *p, size_t size)
+{
+    if (p->compressed_buffer && p->compressed_alloc_size >= size) return EXR_ERR_SUCCESS;
+    if (p->compressed_alloc_size) free(p->compressed_buffer);
+    p->compressed_alloc_size = 0;
+    if (!(p->compressed_buffer = mem_zero(size, 1, NULL))) return EXR_ERR_OUT_OF_MEMORY;
+    p->compressed_alloc_size = size;
+    return EXR_ERR_SUCCESS;
+}
+
 static exr_result_t deflate_chunk(exr_encode_pipeline_t *p, codec *c)
 {
     size_t size = p->packed_bytes;
     if (!reserve(c, size)) return EXR_ERR_OUT_OF_MEMORY;
     codec_split(p->packed_buffer, c->scratch[0], c->scratch[1], size);
-    if (p->compressed_alloc_size < size) {
-        if (p->compressed_alloc_size) free(p->compressed_buffer);
-        p->compressed_alloc_size = 0;
-        if (!(p->compressed_buffer = mem_zero(size, 1, NULL))) return EXR_ERR_OUT_OF_MEMORY;
-        p->compressed_alloc_size = size;
-    }
+    if (take_compressed(p, size) != EXR_ERR_SUCCESS) return EXR_ERR_OUT_OF_MEMORY;
     // One byte less than the raw size: readers take a chunk of that very size for a raw one.
     p->compressed_bytes = libdeflate_zlib_compress(c->deflate, c->scratch[0], size, p->compressed_buffer, size - 1);
     if (!p->compressed_bytes) store_raw(p);
@@ -214,7 +221,10 @@ static exr_result_t compress_chunk(exr_encode_pipeline_t *p)
     case EXR_COMPRESSION_B44A:
         return c->compress_fn(p); // readers always decode these
     default:
-        rv = c->compress_fn(p);
+        // PIZ puts a bitmap of up to 8 KiB and a table before the data, which noise does not make shorter: up to 3.2 the library
+        // does not look whether they fit, and from 3.3 on it gives up where they do not.
+        rv = take_compressed(p, p->packed_bytes + p->packed_bytes / 8 + COMPRESSED_ROOM);
+        if (rv == EXR_ERR_SUCCESS) rv = c->compress_fn(p);
         if (rv == EXR_ERR_SUCCESS && p->compressed_bytes >= p->packed_bytes) store_raw(p);
         return rv;
     }

@@ -181,7 +181,8 @@ static bool decode_by_module(load_job *j)
         if (p->channels[i].wanted && !p->channels[i].data)
             names[i] = p->channels[i].stored ? p->channels[i].stored : p->channels[i].name;
     }
-    ok = images_read_exr_native(j->file->path, j->index, p->channel_count, names, types, data, j->error);
+    ok = images_read_exr_native(j->file->path, j->index, box2_width(p->data_window), box2_height(p->data_window),
+                                p->channel_count, names, types, data, j->error);
     for (size_t i = 0; ok && i < n; i++) {
         if (!names[i]) continue;
         p->channels[i].data = data[i];

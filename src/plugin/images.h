@@ -15,8 +15,9 @@ bool images_read_float(const char *path, int part, int *width, int *height, int 
 
 // The channels of an EXR part in their stored types (DWA): for each of `count` channel names, data[i] receives malloc'ed samples
 // (2 bytes for half, 4 for float and uint) or NULL where names[i] was not wanted (a NULL name).
-bool images_read_exr_native(const char *path, int part, int count, const char *const *names, const int *types, void **data,
-                            error *e);
+// The part must be width x height pixels: the file is opened again by its name, and another may have taken its place since.
+bool images_read_exr_native(const char *path, int part, int width, int height, int count, const char *const *names,
+                            const int *types, void **data, error *e);
 
 // Writes 8-bit RGB, top row first, whole or not at all (base/outfile.h). label: a text that the file carries as `key`.
 bool images_write_png(const char *path, int width, int height, const uint8_t *rgb, const char *key, const char *label, error *e);

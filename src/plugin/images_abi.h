@@ -9,8 +9,8 @@
 
 typedef int (*images_read_float_fn)(const char *path, int part, int *width, int *height, int *channels, float **pixels,
                                     char *message, size_t message_size);
-typedef int (*images_read_native_fn)(const char *path, int part, int count, const char *const *names, const int *types,
-                                     void **data, char *message, size_t message_size);
+typedef int (*images_read_native_fn)(const char *path, int part, int width, int height, int count, const char *const *names,
+                                     const int *types, void **data, char *message, size_t message_size);
 // A PNG file in *bytes. label: a text that it carries as `key`.
 typedef int (*images_encode_png_fn)(int width, int height, const uint8_t *rgb, const char *key, const char *label, void **bytes,
                                     size_t *size, char *message, size_t message_size);

@@ -88,10 +88,15 @@ memory extract(const std::vector<char> &pixels, size_t count, size_t stride, siz
     return plane;
 }
 
-void read_native(const char *path, int part, int count, const char *const *names, const int *types, void **data)
+void read_native(const char *path, int part, int width, int height, int count, const char *const *names, const int *types,
+                 void **data)
 {
     auto in = open_part(path, part);
     const ImageSpec spec = in->spec();
+    // Whoever called has seen the file before, and takes memory of this size for granted.
+    if (spec.width != width || spec.height != height)
+        throw std::runtime_error("it became " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
+                                 " pixels while it was read");
     const size_t n = size_t(spec.width) * size_t(spec.height), stride = spec.pixel_bytes(true);
     std::vector<char> pixels(n * stride);
     read_all(*in, part, TypeDesc::UNKNOWN, pixels.data()); // UNKNOWN: as stored
@@ -143,10 +148,10 @@ EXPORT int ssdo_images_read_float(const char *path, int part, int *width, int *h
     });
 }
 
-EXPORT int ssdo_images_read_native(const char *path, int part, int count, const char *const *names, const int *types, void **data,
-                                   char *message, size_t message_size)
+EXPORT int ssdo_images_read_native(const char *path, int part, int width, int height, int count, const char *const *names,
+                                   const int *types, void **data, char *message, size_t message_size)
 {
-    return guarded(message, message_size, [&] { read_native(path, part, count, names, types, data); });
+    return guarded(message, message_size, [&] { read_native(path, part, width, height, count, names, types, data); });
 }
 
 EXPORT int ssdo_images_encode_png(int width, int height, const uint8_t *rgb, const char *key, const char *label, void **bytes,

@@ -74,17 +74,17 @@ static void test_missing_part_or_channel(void **state)
     const char *const names[] = {"normal.X", NULL, "id"};
     const int types[] = {SAMPLE_FLOAT, SAMPLE_HALF, SAMPLE_UINT};
     void *data[3];
-    assert_ok(images_read_exr_native(in_scratch("i.exr"), 0, 3, names, types, data, &e), e);
+    assert_ok(images_read_exr_native(in_scratch("i.exr"), 0, 9, 4, 3, names, types, data, &e), e);
     assert_memory_equal(data[0], im.channels[6].data, 9 * 4 * 4);
     assert_null(data[1]);
     assert_memory_equal(data[2], im.channels[3].data, 9 * 4 * 4);
     free(data[0]);
     free(data[2]);
-    assert_false(images_read_exr_native(in_scratch("i.exr"), 1, 3, names, types, data, &e));
+    assert_false(images_read_exr_native(in_scratch("i.exr"), 1, 9, 4, 3, names, types, data, &e));
     assert_int_equal(e.code, ERR_INPUT);
     e = (error){0};
     const char *const wrong[] = {"normal.X", "none", NULL};
-    assert_false(images_read_exr_native(in_scratch("i.exr"), 0, 3, wrong, types, data, &e));
+    assert_false(images_read_exr_native(in_scratch("i.exr"), 0, 9, 4, 3, wrong, types, data, &e));
     assert_non_null(strstr(e.message, "none"));
     free_image(&im);
 }
