@@ -97,6 +97,13 @@ static bool fail_value(const option_row *row, const char *text, error *e)
     return err_set(e, ERR_USAGE, NULL, NULL, "--%s must be %s%s, not '%s'; " SEE_HELP, row->name, words, range, text);
 }
 
+// Numbers end up in shaders, in single precision: this leaves room for their squares and for products with radiances.
+static bool fits_single(const char *name, const char *text, double v, error *e)
+{
+    if (v == 0.0 || (fabs(v) >= 1e-15 && fabs(v) <= 1e15)) return true;
+    return err_set(e, ERR_USAGE, NULL, NULL, "--%s %s is beyond what is computed with (1e-15 to 1e15); " SEE_HELP, name, text);
+}
+
 static bool in_range(const option_row *row, double v)
 {
     return row->open ? v > row->min && v < row->max : v >= row->min && v <= row->max;
@@ -110,6 +117,7 @@ static bool set_number(const option_row *row, const char *text, void *field, err
         v = word->value;
     else if (!read_number(text, &v) || !in_range(row, v) || (row->kind == OPT_INT && v != trunc(v)))
         return fail_value(row, text, e);
+    if (!word && !fits_single(row->name, text, v, e)) return false;
     if (row->kind == OPT_INT) {
         int i = (int)v;
         memcpy(field, &i, sizeof i);
@@ -135,6 +143,7 @@ static bool set_radius(const char *text, options *o, error *e)
         memcpy(number, text, n);
         number[n] = '\0';
         if (read_number(number, &v) && v > 0) {
+            if (!fits_single("radius", text, v, e)) return false;
             o->radius = v;
             o->radius_unit = pixels ? RADIUS_PIXELS : RADIUS_WORLD;
             return true;
@@ -144,21 +153,6 @@ static bool set_radius(const char *text, options *o, error *e)
         e, ERR_USAGE, NULL, NULL,
         "--radius must be auto, a length greater than 0 in scene units (0.25) or one in pixels (40px), not '%s'; " SEE_HELP,
         text);
-}
-
-// "NEAR,FAR".
-static bool set_range(const option_row *row, const char *text, double field[2], error *e)
-{
-    char first[64];
-    const char *comma = strchr(text, ',');
-    double v[2];
-    size_t n = comma ? (size_t)(comma - text) : 0;
-    snprintf(first, sizeof first, "%.*s", (int)(n < sizeof first ? n : 0), text);
-    if (!comma || !read_number(first, &v[0]) || !read_number(comma + 1, &v[1]) || !(v[0] >= 0.0 && v[1] > v[0]))
-        return err_set(e, ERR_USAGE, NULL, NULL,
-                       "--%s must be two numbers of at least 0, the second the larger one, not '%s'; " SEE_HELP, row->name, text);
-    memcpy(field, v, sizeof v);
-    return true;
 }
 
 static bool set_text(const option_row *row, const char *text, void *field, error *e)
@@ -202,8 +196,6 @@ static bool set_value(const option_row *row, const char *text, options *o, error
     case OPT_INT:
     case OPT_REAL:
         return set_number(row, text, field, e);
-    case OPT_RANGE:
-        return set_range(row, text, field, e);
     case OPT_RADIUS:
         return set_radius(text, o, e);
     }
@@ -306,13 +298,6 @@ static bool parse_long(walk *w)
     if (row->kind == OPT_FLAG && value)
         return err_set(w->e, ERR_USAGE, NULL, NULL, "--%s takes no value, but '%s' was given; " SEE_HELP, row->name, value);
     if (row->kind != OPT_FLAG && !value && !(value = next_value(w, row))) return false;
-    if (row->kind == OPT_RANGE && !strchr(value, ',')) {
-        char both[160];
-        const char *second = next_value(w, row);
-        if (!second) return false;
-        snprintf(both, sizeof both, "%.70s,%.70s", value, second);
-        return set_value(row, both, w->o, w->e);
-    }
     return set_value(row, value, w->o, w->e);
 }
 

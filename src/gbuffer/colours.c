@@ -11,21 +11,22 @@ static const float most = 1e30f;
 typedef struct job {
     plane from[4];
     float fill[4];
-    int components; // of `to`
-    bool unit;      // clamp to 0..1
+    int components;  // of `to`
+    float low, high; // what is beyond is brought here
     float *to;
     int width;
-    atomic_size_t *bad; // counts samples that are NaN or infinite
+    atomic_size_t *bad;      // counts samples that are NaN or infinite
+    atomic_size_t *negative; // and those below 0, where that has no meaning; NULL: it has
 } job;
 
 enum { BLOCK = 256 }; // pixels converted at a time, in the nearest cache
 
-static float tamed(float v, bool unit)
+// NaN and -infinity are 0.
+static float tamed(float v, float low, float high)
 {
-    float low = unit ? 0.0f : -most, high = unit ? 1.0f : most;
     if (v >= low && v <= high) return v;
     if (v > high) return high;
-    return v >= -FLT_MAX && !unit ? -most : 0.0f; // NaN and -infinity are 0
+    return v >= -FLT_MAX ? low : 0.0f;
 }
 
 // n samples of a row from pixel x on as floats, NaN outside the part's window. Adds those that are stored as NaN or infinity to
@@ -48,6 +49,13 @@ static void fetch(const plane *p, int x, int y, int n, float *to, size_t *bad)
     for (int i = first; i < last; i++) *bad += isfinite(to[i]) ? 0 : 1;
 }
 
+static void count_negative(const job *j, const float *values, int n)
+{
+    size_t count = 0;
+    for (int i = 0; i < n; i++) count += values[i] < 0.0f;
+    if (count) atomic_fetch_add(j->negative, count);
+}
+
 static void convert_block(const job *j, int x, int y, int n, size_t *bad)
 {
     const size_t step = (size_t)j->components;
@@ -55,7 +63,8 @@ static void convert_block(const job *j, int x, int y, int n, size_t *bad)
     for (int c = 0; c < j->components; c++) {
         float *to = j->to + ((size_t)y * (size_t)j->width + (size_t)x) * step + (size_t)c;
         if (j->from[c].data) fetch(&j->from[c], x, y, n, values, bad);
-        for (int i = 0; i < n; i++, to += step) *to = j->from[c].data ? tamed(values[i], j->unit) : j->fill[c];
+        if (j->negative && j->from[c].data) count_negative(j, values, n);
+        for (int i = 0; i < n; i++, to += step) *to = j->from[c].data ? tamed(values[i], j->low, j->high) : j->fill[c];
     }
 }
 
@@ -81,7 +90,8 @@ static bool convert(build *b, job *j, float **out)
 static bool colour(build *b, unsigned need, role r, float **out)
 {
     if (!(b->options->need & need) || b->r->components[r] == 0) return true;
-    job j = {.components = 4};
+    job j = {.components = 4, .low = -most, .high = most};
+    if (r == ROLE_ALBEDO) j.low = 0.0f, j.negative = &b->negative_albedo; // no surface reflects less than nothing
     for (int c = 0; c < 3; c++) j.from[c] = build_plane(b, r, c);
     if (r == ROLE_BEAUTY) j.from[3] = build_plane(b, ROLE_ALPHA, 0), j.fill[3] = 1.0f;
     return convert(b, &j, out);
@@ -90,7 +100,7 @@ static bool colour(build *b, unsigned need, role r, float **out)
 static bool material(build *b)
 {
     if (!(b->options->need & NEED_MATERIAL) || b->r->components[ROLE_ROUGHNESS] == 0) return true;
-    job j = {.components = 2, .unit = true};
+    job j = {.components = 2, .high = 1.0f};
     j.from[0] = build_plane(b, ROLE_ROUGHNESS, 0), j.from[1] = build_plane(b, ROLE_METALLIC, 0);
     return convert(b, &j, &b->g->material);
 }

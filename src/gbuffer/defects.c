@@ -20,4 +20,6 @@ void defects_warn(build *b)
     warn_of(b, "bad-colours", atomic_load(&b->bad_colours), b->colour_samples,
             "the colour samples are NaN or infinite; they count as black or as the largest value there is (--albedo, "
             "--beauty name other channels)");
+    warn_of(b, "negative-albedo", atomic_load(&b->negative_albedo), 3 * pixels,
+            "the albedo's samples are negative; they count as black (--albedo names another channel)");
 }

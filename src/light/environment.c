@@ -82,6 +82,12 @@ bool environment_prepare(const float *rgb, int width, int height, const env_opti
     out->levels[0] = (env_level){width, height, rgba};
     out->level_count = 1;
     out->repaired = fill_level0(rgb, texels, options->scale, rgba);
+    if (out->repaired == texels) {
+        err_set(e, ERR_INPUT, options->path, NULL,
+                "every texel of the environment map is NaN, infinite or negative; render it or convert it again");
+        environment_free(out);
+        return false;
+    }
     if (out->repaired)
         log_warn(log, "env-repaired", "%s: %zu of %zu texels of the environment were NaN, infinite or negative and were repaired",
                  options->path ? options->path : "environment", out->repaired, texels);
