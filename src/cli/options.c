@@ -155,6 +155,21 @@ static bool set_radius(const char *text, options *o, error *e)
         text);
 }
 
+// "NEAR,FAR".
+static bool set_range(const option_row *row, const char *text, double field[2], error *e)
+{
+    char first[64];
+    const char *comma = strchr(text, ',');
+    double v[2];
+    size_t n = comma ? (size_t)(comma - text) : 0;
+    snprintf(first, sizeof first, "%.*s", (int)(n < sizeof first ? n : 0), text);
+    if (!comma || !read_number(first, &v[0]) || !read_number(comma + 1, &v[1]) || !(v[0] >= 0.0 && v[1] > v[0]))
+        return err_set(e, ERR_USAGE, NULL, NULL,
+                       "--%s must be two numbers of at least 0, the second the larger one, not '%s'; " SEE_HELP, row->name, text);
+    memcpy(field, v, sizeof v);
+    return true;
+}
+
 static bool set_text(const option_row *row, const char *text, void *field, error *e)
 {
     if (!*text && !row->may_be_empty)
@@ -196,6 +211,8 @@ static bool set_value(const option_row *row, const char *text, options *o, error
     case OPT_INT:
     case OPT_REAL:
         return set_number(row, text, field, e);
+    case OPT_RANGE:
+        return set_range(row, text, field, e);
     case OPT_RADIUS:
         return set_radius(text, o, e);
     }
@@ -298,6 +315,13 @@ static bool parse_long(walk *w)
     if (row->kind == OPT_FLAG && value)
         return err_set(w->e, ERR_USAGE, NULL, NULL, "--%s takes no value, but '%s' was given; " SEE_HELP, row->name, value);
     if (row->kind != OPT_FLAG && !value && !(value = next_value(w, row))) return false;
+    if (row->kind == OPT_RANGE && !strchr(value, ',')) {
+        char both[160];
+        const char *second = next_value(w, row);
+        if (!second) return false;
+        snprintf(both, sizeof both, "%.70s,%.70s", value, second);
+        return set_value(row, both, w->o, w->e);
+    }
     return set_value(row, value, w->o, w->e);
 }
 

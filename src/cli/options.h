@@ -68,6 +68,7 @@ typedef struct options {
     const char *role_names[16]; // --position ... --emission, indexed by gbuffer/resolve.h's role
     const char *depth_kind, *albedo_kind, *view_layer;
     const char *normal_space, *normal_encoding; // NULL = found
+    double depth_range[2];                      // near, far; far 0 = not given
     double fov, ortho;                          // 0 = not given
     const char *camera_file;
 

@@ -74,6 +74,16 @@ static const char *value_text(const option_row *row, const options *o, char *buf
         if (o->radius_unit == RADIUS_PIXELS) strcat(buf, "px");
         return buf;
     }
+    if (row->kind == OPT_RANGE) {
+        double range[2];
+        memcpy(range, field, sizeof range);
+        if (!(range[1] > 0.0)) return NULL;
+        number_text(range[0], buf, size);
+        size_t n = strlen(buf);
+        buf[n] = ',';
+        number_text(range[1], buf + n + 1, size - n - 1);
+        return buf;
+    }
     if (row->kind == OPT_CHOICE || row->kind == OPT_TEXT || row->kind == OPT_PATH) {
         const char *text;
         memcpy(&text, field, sizeof text);

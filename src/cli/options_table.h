@@ -18,6 +18,7 @@ typedef enum option_kind {
     OPT_PATH,   // const char *, a file name; the header record keeps only its base name
     OPT_INT,    // int in [min, max], or one of the words
     OPT_REAL,   // double in [min, max], or one of the words
+    OPT_RANGE,  // double[2]: two rising numbers of at least 0, in two arguments or one with a comma
     OPT_RADIUS, // radius and radius_unit: a length, "40px" or "auto"
 } option_kind;
 

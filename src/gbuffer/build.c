@@ -67,6 +67,7 @@ static void open_planes(build *b)
     b->has_position = b->position[0].data && b->position[1].data && b->position[2].data;
     b->has_normal = b->normal[0].data && b->normal[1].data && b->normal[2].data;
     b->has_depth = b->depth.data != NULL;
+    b->depth_code = (depth_code){.kind = DEPTH_PLANAR, .sign = 1.0};
 }
 
 static bool open_frame(build *b)
@@ -111,8 +112,8 @@ bool gbuffer_build(const exr_file *file, const resolution *r, const gbuffer_opti
 {
     *out = (gbuffer){0};
     build b = {.file = file, .r = r, .options = options, .g = out, .log = log, .e = e, .row = convention_named(r->convention)};
-    bool done = open_frame(&b) && validity_classify(&b) && validity_sample(&b) && choose_camera(&b) && positions_raw(&b) &&
-                measure_normals(&b) && damage_warn(&b);
+    bool done = open_frame(&b) && depth_open(&b) && validity_find(&b) && choose_camera(&b) && depth_settle(&b) &&
+                positions_raw(&b) && measure_normals(&b) && damage_warn(&b);
     if (done) {
         positions_final(&b);
         normals_make(&b);

@@ -8,6 +8,7 @@
 #include "base/half.h"
 #include "gbuffer/camera_header.h"
 #include "gbuffer/conventions.h"
+#include "gbuffer/depth_code.h"
 #include "gbuffer/gbuffer.h"
 
 // One channel seen from the frame's data window. data NULL: absent.
@@ -50,6 +51,7 @@ typedef struct build {
     error *e;
 
     plane position[3], normal[3], depth, alpha;
+    depth_code depth_code;
     bool has_position, has_normal, has_depth; // present and believed
     uint8_t *surface;                         // a `surface` per pixel
     float *raw;                               // depth as P (or Z) says, before it is moved onto the pixel's ray; 0 none
@@ -103,6 +105,12 @@ static inline vec3 build_position(const build *b, int x, int y)
     return v3(plane_get(&b->position[0], x, y), plane_get(&b->position[1], x, y), plane_get(&b->position[2], x, y));
 }
 
+// Z decoded to planar distance, or radial where its kind is that; NaN where it holds none.
+static inline double build_depth(const build *b, int x, int y)
+{
+    return depth_decode(&b->depth_code, plane_get(&b->depth, x, y));
+}
+
 // Direction with z = 1 (perspective) through the centre of the pixel; orthographic: (0, 0, 1).
 static inline vec3 build_ray(const camera *c, int x, int y)
 {
@@ -117,12 +125,16 @@ static inline vec3 build_point(const camera *c, int x, int y, double z)
     return v3((x + 0.5 - c->cx) / c->fx * s, (y + 0.5 - c->cy) / c->fy * s, z);
 }
 
-// validity.c: which pixels hold a surface, and the sample of points.
-bool validity_classify(build *b);
-bool validity_sample(build *b);
+// validity.c: which pixels hold a surface, and the sample of points. May be called again when the depth is read otherwise.
+bool validity_find(build *b);
 
 // choose_camera.c: the camera by flag, fit, header or plane.
 bool choose_camera(build *b);
+
+// depth_hypotheses.c: the depth's sign and the kind that an option says; then, with the camera known, the kind of a depth that no
+// positions explain, which may find the surfaces anew. An error where depth cannot be read without a range.
+bool depth_open(build *b);
+bool depth_settle(build *b);
 
 // measure.c: what Z is, and whether it or P gives the depth.
 bool measure_depth(build *b);

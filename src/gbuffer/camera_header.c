@@ -68,7 +68,7 @@ bool camera_from_ndc(double m[4][4], box2 data, box2 display, const camera_point
 }
 
 // A number, or a text that begins with one.
-static bool number_of(const exr_file *file, int part, const char *name, double *value)
+bool camera_number(const exr_file *file, int part, const char *name, double *value)
 {
     const char *text;
     part = exr_attr_part(file, part, name);
@@ -83,7 +83,7 @@ bool camera_from_lens(const exr_file *file, int part, const header_camera *where
                       camera *out)
 {
     double fov;
-    if (!file->core || !where->fov || !number_of(file, part, where->fov, &fov)) return false;
+    if (!file->core || !where->fov || !camera_number(file, part, where->fov, &fov)) return false;
     if (where->radians) fov *= 57.295779513082320877;
     if (!(fov > 0.0 && fov < 180.0)) return false;
     camera_from_fov(fov, data, display, pixel_aspect, out);
@@ -100,7 +100,7 @@ static bool pose_from_angles(const exr_file *file, int part, const char *beginni
     for (int i = 0; i < 6; i++) {
         char name[128];
         snprintf(name, sizeof name, "%s%s", beginning, names[i]);
-        if (!number_of(file, part, name, &v[i])) return false;
+        if (!camera_number(file, part, name, &v[i])) return false;
         if (i < 3) v[i] *= 0.017453292519943295769;
     }
     double cy = cos(v[0]), sy = sin(v[0]), cp = cos(v[1]), sp = sin(v[1]), cr = cos(v[2]), sr = sin(v[2]);

@@ -13,6 +13,9 @@
 // points.
 bool camera_from_ndc(double m[4][4], box2 data, box2 display, const camera_point *points, size_t count, camera *out);
 
+// An attribute's number, finite: one, or a text that begins with one.
+bool camera_number(const exr_file *file, int part, const char *name, double *value);
+
 // The lens of a row's field of view attribute; no pose. False when there is none or it is not between 0 and 180 degrees.
 bool camera_from_lens(const exr_file *file, int part, const header_camera *where, box2 data, box2 display, double pixel_aspect,
                       camera *out);

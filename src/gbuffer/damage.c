@@ -63,7 +63,7 @@ static void look_at_row(const build *b, int y, look *l)
     for (int x = 0; x < w; x++) {
         bool there = b->raw[build_index(b, x, y)] > 0.0f;
         l->z[0][x] = there && b->has_position ? camera_from_world(&b->g->camera, build_position(b, x, y)).z : 0.0;
-        l->z[1][x] = there && b->has_depth ? plane_get(&b->depth, x, y) : 0.0;
+        l->z[1][x] = there && b->has_depth ? build_depth(b, x, y) : 0.0;
         l->n[x] = there && b->has_normal ? stored_normal(b, x, y) : v3(0, 0, 0);
     }
     count_depth(l->z[0], w, &l->position);

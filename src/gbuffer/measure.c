@@ -1,4 +1,5 @@
 // What the file's depth means, by comparing it with the positions.
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
@@ -32,6 +33,12 @@ static double radial_error(const build *b, size_t i, double unused)
     double r = v3_length(seen(b, i));
     return fabs(b->point_depth[i] - r) / r;
 }
+static double inverse_error(const build *b, size_t i, double unused)
+{
+    double z = seen(b, i).z;
+    (void)unused;
+    return fabs(1.0 / b->point_depth[i] - z) / fabs(z);
+}
 static double offset_of(const build *b, size_t i, double unused)
 {
     (void)unused;
@@ -46,8 +53,11 @@ static double position_step(const build *b, size_t i, double unused)
 }
 static double depth_step(const build *b, size_t i, double unused)
 {
+    double step = step_of(b->depth.type);
     (void)unused;
-    return b->point_depth[i] * step_of(b->depth.type);
+    if (b->depth_code.kind <= DEPTH_INVERSE) return b->point_depth[i] * step;
+    double v = plane_get(&b->depth, (int)b->points[i].x, (int)b->points[i].y);
+    return fabs(depth_decode(&b->depth_code, v * (1.0 - step)) - b->point_depth[i]);
 }
 // P's rounding seen from the camera, in pixels.
 static double lateral_step(const build *b, size_t i, double unused)
@@ -57,26 +67,52 @@ static double lateral_step(const build *b, size_t i, double unused)
     return position_step(b, i, unused) * scale;
 }
 
+// The distances of 1 / z, where nothing else fits.
+static void take_inverse(build *b)
+{
+    b->depth_code.kind = DEPTH_INVERSE;
+    for (size_t i = 0; i < b->point_count; i++) b->point_depth[i] = 1.0 / b->point_depth[i];
+}
+
 static void settle_kind(build *b, double *scratch)
 {
     gbuffer *g = b->g;
+    verdict *v = &g->depth_verdict;
     bool perspective = g->camera.kind == CAMERA_PERSPECTIVE;
     b->depth_offset = perspective ? 0.0 : median_by(b, scratch, offset_of, 0.0);
     double planar = median_by(b, scratch, planar_error, b->depth_offset);
     double radial = perspective ? median_by(b, scratch, radial_error, 0.0) : INFINITY;
+    double inverse = perspective ? median_by(b, scratch, inverse_error, 0.0) : INFINITY;
+    const depth_kind code = b->depth_code.kind; // of an option
+    verdict_try(v, depth_text(code > DEPTH_RADIAL ? code : DEPTH_PLANAR), planar, planar);
+    verdict_try(v, depth_text(DEPTH_RADIAL), radial, radial);
+    if (code <= DEPTH_RADIAL) verdict_try(v, depth_text(DEPTH_INVERSE), inverse, inverse);
+    v->measure = "median relative difference from the positions";
+    v->fit = v->tried[0].fit, v->next = v->tried[1].fit;
+    if (code <= DEPTH_RADIAL && !b->r->depth_told && fmin(planar, radial) >= same_depth && inverse < same_depth) {
+        take_inverse(b);
+        planar = inverse, radial = INFINITY;
+    }
     g->depth_kind = radial < planar ? DEPTH_RADIAL : DEPTH_PLANAR;
     b->depth_measured = fmin(planar, radial) < same_depth;
+    depth_kind found = b->depth_code.kind > DEPTH_RADIAL ? b->depth_code.kind : g->depth_kind;
+    snprintf(v->reading, sizeof v->reading, "%s", b->depth_measured ? depth_text(found) : "no known kind of depth");
     if (!b->depth_measured)
-        build_note(b, "depth is neither planar nor radial distance (off by %.2g %% at best); only its background is used",
-                   100.0 * fmin(planar, radial));
+        build_note(b,
+                   "depth is neither planar nor radial distance nor 1 / z (off by %.2g %% at best); only its background is used",
+                   100.0 * v->fit);
     else
-        build_note(b, "depth: %s (median difference from the positions %.2g; as %s %.2g)",
-                   g->depth_kind == DEPTH_RADIAL ? "radial" : "planar", fmin(planar, radial),
-                   g->depth_kind == DEPTH_RADIAL ? "planar" : "radial", fmax(planar, radial));
-    if (b->r->depth != DEPTH_AUTO && b->r->depth != g->depth_kind) {
-        log_warn(b->log, "depth-kind", "--depth-kind contradicts the positions, which say %s",
-                 g->depth_kind == DEPTH_RADIAL ? "radial" : "planar");
+        build_note(b, "depth: %s%s (median difference from the positions %.2g; next best %.2g)",
+                   b->depth_code.sign < 0.0 ? "negative " : "", v->reading, v->fit, v->next);
+    if (!b->r->depth_told) return;
+    if (b->r->depth <= DEPTH_RADIAL && b->r->depth != g->depth_kind) {
+        log_warn(b->log, "depth-kind", "--depth-kind contradicts the positions, which say %s", depth_word(g->depth_kind));
         g->depth_kind = b->r->depth;
+        v->doubtful = true;
+    } else if (b->r->depth > DEPTH_RADIAL && !b->depth_measured) {
+        log_warn(b->log, "depth-kind", "--depth-kind %s contradicts the positions; only the depth's background is used",
+                 depth_word(b->r->depth));
+        v->doubtful = true;
     }
 }
 
@@ -114,7 +150,7 @@ static void compare(build *b, double *scratch)
 bool measure_depth(build *b)
 {
     gbuffer *g = b->g;
-    g->depth_kind = b->r->depth == DEPTH_AUTO ? DEPTH_PLANAR : b->r->depth;
+    if (b->has_position) g->depth_kind = b->r->depth == DEPTH_RADIAL ? DEPTH_RADIAL : DEPTH_PLANAR;
     b->depth_wins = b->has_depth && !b->has_position;
     b->depth_measured = b->depth_wins;
     if (b->point_count == 0) return true;

@@ -114,24 +114,13 @@ static bool displaces(const search *s, const reading *b, const reading *a, kind 
     return gain > certain * sqrt(variance);
 }
 
-static void remember(search *s, const reading *r)
-{
-    verdict *list = s->list;
-    hypothesis h = {.fit = (double)NAN, .loss = r->loss};
-    reading_describe(s->b, r, h.name, sizeof h.name);
-    for (int i = 0; i < list->count; i++)
-        if (strcmp(list->tried[i].name, h.name) == 0) return;
-    int at = list->count < VERDICT_HYPOTHESES ? list->count++ : VERDICT_HYPOTHESES - 1;
-    if (at == VERDICT_HYPOTHESES - 1 && list->tried[at].name[0] && list->tried[at].loss <= h.loss) return;
-    for (; at > 0 && list->tried[at - 1].loss > h.loss; at--) list->tried[at] = list->tried[at - 1];
-    list->tried[at] = h;
-}
-
 // Takes the reading as the best of its kind if it has the smaller loss.
 static void offer(search *s, reading r, kind k)
 {
     r.loss = mean_loss(s, &r);
-    remember(s, &r);
+    char name[VERDICT_TEXT];
+    reading_describe(s->b, &r, name, sizeof name);
+    verdict_try(s->list, name, (double)NAN, r.loss);
     if (s->has[k] && s->best[k].loss <= r.loss) return;
     s->best[k] = r, s->has[k] = true;
 }

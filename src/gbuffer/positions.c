@@ -13,7 +13,7 @@ static const double same_depth = 0.02; // relative
 // Z as planar depth at a pixel. The caller has checked that there is a depth.
 static double depth_from_channel(const build *b, int x, int y)
 {
-    double z = plane_get(&b->depth, x, y);
+    double z = build_depth(b, x, y);
     const camera *c = &b->g->camera;
     if (c->kind == CAMERA_ORTHOGRAPHIC) return z + b->depth_offset;
     return b->g->depth_kind == DEPTH_RADIAL ? z / v3_length(build_ray(c, x, y)) : z;
@@ -25,7 +25,7 @@ static vec3 sampled(const build *b, int x, int y)
     vec3 p = camera_from_world(&b->g->camera, build_position(b, x, y));
     if (!b->depth_wins) return p;
     const camera *c = &b->g->camera;
-    double z = plane_get(&b->depth, x, y);
+    double z = build_depth(b, x, y);
     if (c->kind == CAMERA_ORTHOGRAPHIC) return v3(p.x, p.y, z + b->depth_offset);
     double length = b->g->depth_kind == DEPTH_RADIAL ? v3_length(p) : p.z;
     return v3_scale(p, z / length);

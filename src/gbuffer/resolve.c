@@ -319,6 +319,7 @@ bool resolve_channels(const exr_file *file, const resolve_options *options, reso
     snprintf(out->view_layer, sizeof out->view_layer, "%s", s.key);
     out->main_part = out->channels[has_position ? ROLE_POSITION : ROLE_DEPTH][0].part;
     out->depth = options->depth;
+    out->depth_told = options->depth != DEPTH_AUTO;
     if (out->depth == DEPTH_AUTO && !has_position) out->depth = s.row->depth == DEPTH_AUTO ? DEPTH_PLANAR : s.row->depth;
     out->up_is_z = s.row->up_is_z;
     out->background_depth = s.row->background_depth;

@@ -30,7 +30,19 @@ typedef struct channel_ref {
     int part, channel;
 } channel_ref; // part -1: absent
 
-typedef enum depth_kind { DEPTH_AUTO, DEPTH_PLANAR, DEPTH_RADIAL } depth_kind;
+// Distance from the camera's plane or from the eye; or, for planar z: 1 / z with 0 behind everything; between near and far 0..1
+// or 1..0; the hyperbolic 0..1 of a z-buffer, or that reversed (1 at near).
+typedef enum depth_kind {
+    DEPTH_AUTO,
+    DEPTH_PLANAR,
+    DEPTH_RADIAL,
+    DEPTH_INVERSE,
+    DEPTH_LINEAR,
+    DEPTH_INVERTED,
+    DEPTH_ZBUFFER,
+    DEPTH_REVERSED,
+    DEPTH_KINDS
+} depth_kind;
 typedef enum albedo_kind { ALBEDO_AUTO, ALBEDO_BASE, ALBEDO_DIFFUSE } albedo_kind;
 
 typedef struct resolve_options {
@@ -49,6 +61,7 @@ typedef struct resolution {
     char view_layer[128];
     int main_part;           // the part that position/depth live in; its windows are the frame's
     depth_kind depth;        // DEPTH_AUTO until measured against P
+    bool depth_told;         // by an option
     albedo_kind albedo;      // never AUTO after resolve
     bool up_is_z;            // the renderer's world up: default of --env-up
     double background_depth; // depths at or beyond this are background (besides inf, NaN, <= 0)

@@ -17,7 +17,7 @@ static bool depth_good(const build *b, double z)
 
 static surface classify(build *b, int x, int y)
 {
-    bool good = !b->has_depth || depth_good(b, plane_get(&b->depth, x, y));
+    bool good = !b->has_depth || depth_good(b, build_depth(b, x, y));
     if (!b->has_position) return good ? SURFACE_YES : SURFACE_NONE;
     vec3 p = build_position(b, x, y);
     double most = fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
@@ -40,7 +40,7 @@ static size_t count_surfaces(const build *b)
 }
 
 // A depth that calls most of the positions background is no depth of them (an artist's remapped Z, an empty channel).
-bool validity_classify(build *b)
+static bool classify_all(build *b)
 {
     build_rows(b, classify_row);
     b->candidates = count_surfaces(b);
@@ -73,8 +73,11 @@ bool validity_classify(build *b)
 }
 
 // One pixel out of every run of `stride` surface pixels in reading order, at random.
-bool validity_sample(build *b)
+static bool sample(build *b)
 {
+    free(b->points);
+    free(b->point_depth);
+    b->point_count = 0;
     size_t stride = b->candidates / SAMPLE_POINTS + 1, most = b->candidates / stride + 1;
     b->points = mem_pixels(most, sizeof *b->points, b->e);
     b->point_depth = mem_pixels(most, sizeof *b->point_depth, b->e);
@@ -88,7 +91,9 @@ bool validity_sample(build *b)
             chosen = seen - 1 - (seen - 1) % stride + stride + (size_t)(solve_random(&random) % stride);
             vec3 p = b->has_position ? build_position(b, x, y) : v3(0, 0, 0);
             b->points[b->point_count] = (camera_point){p, x + 0.5, y + 0.5};
-            b->point_depth[b->point_count++] = b->has_depth ? plane_get(&b->depth, x, y) : (double)NAN;
+            b->point_depth[b->point_count++] = b->has_depth ? build_depth(b, x, y) : (double)NAN;
         }
     return true;
 }
+
+bool validity_find(build *b) { return classify_all(b) && sample(b); }

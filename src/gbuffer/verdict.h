@@ -24,4 +24,7 @@ typedef struct verdict {
     int count;
 } verdict;
 
+// Puts a hypothesis in its place, best first; of those of one name the first stays.
+void verdict_try(verdict *v, const char *name, double fit, double loss);
+
 #endif

@@ -12,6 +12,7 @@
 #include "cli/frames.h"
 #include "exr/write.h"
 #include "gbuffer/conventions.h"
+#include "gbuffer/depth_code.h"
 #include "pipeline/filter.h"
 #include "pipeline/output.h"
 #include "pipeline/stored.h"
@@ -67,7 +68,7 @@ static resolve_options resolve_options_of(const options *o)
 {
     resolve_options r = {.view_layer = o->view_layer};
     for (int i = 0; i < ROLE_COUNT; i++) r.names[i] = o->role_names[i];
-    if (o->depth_kind) r.depth = strcmp(o->depth_kind, "radial") == 0 ? DEPTH_RADIAL : DEPTH_PLANAR;
+    if (o->depth_kind) r.depth = depth_named(o->depth_kind);
     if (o->albedo_kind) r.albedo = strcmp(o->albedo_kind, "base") == 0 ? ALBEDO_BASE : ALBEDO_DIFFUSE;
     return r;
 }
@@ -131,7 +132,9 @@ static bool build_view(const job *j, frame_result *r, error *e)
                          .ortho = j->o->ortho,
                          .threads = j->threads,
                          .normal_space = normal_space_of(j->o),
-                         .normal_encoding = j->o->normal_encoding};
+                         .normal_encoding = j->o->normal_encoding,
+                         .depth_near = j->o->depth_range[0],
+                         .depth_far = j->o->depth_range[1]};
     if (r->view) log_info(j->log, "view %s:", r->view);
     return gbuffer_build(r->file, &r->resolution, &g, &r->gb, j->log, e) && convert_albedo(j, r, e) &&
            (!r->plan.from_sh || stored_sh_load(j->o, r->file, r->view, &r->gb, r->stored_sh, e));

@@ -265,6 +265,20 @@ static void shown_defaults_are_true(void **state)
     assert_true(compared >= 12);
 }
 
+static void a_range_in_one_argument_or_two(void **state)
+{
+    (void)state;
+    const char *const forms[] = {"--depth-range 0.5 20", "--depth-range 0.5,20", "--depth-range=0.5,20"};
+    for (int i = 0; i < 3; i++) {
+        options o = good(forms[i]);
+        assert_true(o.depth_range[0] == 0.5 && o.depth_range[1] == 20.0 && o.input_count == 1);
+    }
+    bad("--depth-range 20 0.5", "--depth-range", "the second the larger");
+    bad("--depth-range -1,5", "--depth-range", "at least 0");
+    bad("--depth-range 5", "--depth-range", "needs a value");
+    bad("--depth-range=5", "--depth-range", "needs a value");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -273,6 +287,7 @@ int main(void)
         cmocka_unit_test(short_options),
         cmocka_unit_test(presets_are_defaults),
         cmocka_unit_test(radius_in_three_forms),
+        cmocka_unit_test(a_range_in_one_argument_or_two),
         cmocka_unit_test(words_for_values),
         cmocka_unit_test(channel_options_hit_their_role),
         cmocka_unit_test(unknown_options_name_the_nearest),

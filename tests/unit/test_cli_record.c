@@ -67,6 +67,7 @@ static const char *const everything =
     "Layer.Position' --normal 'it'\\''s N' "
     "--depth Z "
     "--albedo a --beauty b --roughness r --metallic m --emission e --view-layer 'A \"B\" $C' --depth-kind radial "
+    "--depth-range 0.125,20 --normal-space world --normal-encoding unorm-srgb "
     "--albedo-colorspace Cg --albedo-kind "
     "base "
     "--fov 39.6 --radius-from 12";

@@ -1,0 +1,255 @@
+// What a depth means that no positions explain. Two witnesses tell its kinds apart, neither of which needs the scale:
+// - the file's normals, which fit the surfaces of the right kind only;
+// - planes, on which 1 / z is linear across a perspective picture (z across an orthographic one) in the right kind only.
+// Where both are silent the renderer's kind counts, unless the values look like no distance: all within 0..1.
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/mem.h"
+#include "gbuffer/normal_hypotheses.h"
+
+enum { SAMPLES = 800, LOOKED_AT = 40000, MOST = DEPTH_KINDS };
+static const double fits = 0.97;           // median cosine from which the normals confirm a kind
+static const double gain[2] = {2e-4, 0.3}; // of loss, and its share, that another kind must have over the renderer's
+static const double many_planes = 0.15;    // share of the looked-at pixels on planes from which they confirm a kind
+static const double bend = 1e-3;           // second difference over the first, below which a profile is a line
+
+typedef struct trial {
+    depth_code code;
+    double fit, loss; // by the normals; loss INFINITY without
+    double flat;      // share of pixels on planes
+} trial;
+
+// Raw values of the frame.
+typedef struct values {
+    size_t looked_at, negative, zero, one, within; // within: 0 < v < 1
+    size_t beyond;                                 // v > 1, background left out
+} values;
+
+static bool background(const build *b, double v)
+{
+    return !isfinite(v) || fabs(v) >= b->r->background_depth || (b->depth.type == SAMPLE_HALF && fabs(v) >= 65504.0);
+}
+
+static values look(const build *b)
+{
+    values s = {0};
+    size_t pixels = (size_t)b->g->width * (size_t)b->g->height, stride = pixels / LOOKED_AT + 1;
+    for (size_t i = 0; i < pixels; i += stride) {
+        double v = plane_get(&b->depth, (int)(i % (size_t)b->g->width), (int)(i / (size_t)b->g->width));
+        if (background(b, v)) continue;
+        s.looked_at++, s.negative += v < 0.0, s.zero += v == 0.0, s.one += v == 1.0;
+        s.within += v > 0.0 && v<1.0, s.beyond += v> 1.0;
+    }
+    return s;
+}
+
+// Near and far by an option, or by names that headers use.
+static bool find_range(const build *b, double *near, double *far)
+{
+    static const char *const names[][2] = {{"near", "far"},
+                                           {"nearClip", "farClip"},
+                                           {"near_clip", "far_clip"},
+                                           {"clipNear", "clipFar"},
+                                           {"arnold/camera/near_clip", "arnold/camera/far_clip"}};
+    *near = b->options->depth_near, *far = b->options->depth_far;
+    if (*far > 0.0) return true;
+    for (size_t i = 0; b->file->core && i < sizeof names / sizeof *names; i++)
+        if (camera_number(b->file, b->r->main_part, names[i][0], near) &&
+            camera_number(b->file, b->r->main_part, names[i][1], far) && *near >= 0.0 && *far > *near)
+            return true;
+    return false;
+}
+
+static bool no_range(build *b, const char *what)
+{
+    return err_set(b->e, ERR_INPUT, b->file->path, NULL,
+                   "%s; give --depth-range NEAR FAR and, where it is not recognised, --depth-kind linear, inverted, zbuffer or "
+                   "reversed",
+                   what);
+}
+
+bool depth_open(build *b)
+{
+    depth_code *c = &b->depth_code;
+    if (!b->has_depth) return true;
+    b->g->depth_kind = b->r->depth == DEPTH_RADIAL ? DEPTH_RADIAL : DEPTH_PLANAR;
+    values s = look(b);
+    if (10 * s.negative > 9 * (s.looked_at - s.zero)) c->sign = s.looked_at > s.zero ? -1.0 : 1.0;
+    if (!b->r->depth_told || b->r->depth <= DEPTH_RADIAL) return true;
+    c->kind = b->r->depth;
+    if (!depth_needs_range(c->kind)) return true;
+    if (!find_range(b, &c->near, &c->far)) return no_range(b, "the depth's near and far are not known");
+    if (c->near > 0.0 || c->kind == DEPTH_LINEAR || c->kind == DEPTH_INVERTED) return true;
+    return no_range(b, "a z-buffer's near lies at 0, which says nothing about depth");
+}
+
+// Planar distance at a pixel as the code has it, 0 where there is none.
+static double distance(const build *b, const depth_code *c, int x, int y)
+{
+    if (!plane_holds(&b->depth, x, y)) return 0.0;
+    double v = plane_get(&b->depth, x, y), z = background(b, v) ? 0.0 : depth_decode(c, v);
+    if (c->kind == DEPTH_RADIAL && b->g->camera.kind == CAMERA_PERSPECTIVE) z /= v3_length(build_ray(&b->g->camera, x, y));
+    return z > 0.0 && isfinite(z) ? z : 0.0;
+}
+
+static bool point_of(const build *b, const void *context, int x, int y, vec3 *p)
+{
+    double z = x >= 0 && y >= 0 && x < b->g->width && y < b->g->height ? distance(b, context, x, y) : 0.0;
+    if (!(z > 0.0)) return false;
+    *p = build_point(&b->g->camera, x, y, z);
+    return true;
+}
+
+static bool ask_normals(build *b, trial *t, evidence *v)
+{
+    verdict ignored = {0};
+    normal_choice c;
+    evidence_gather(b, point_of, &t->code, 1, SAMPLES, v);
+    if (v->count == 0 || v->spread < 0.01) return true; // a wall fits every kind
+    if (!normals_choose(b, v, &ignored, &c)) return false;
+    if (c.one_way) return true; // constant normals say nothing
+    t->fit = c.best.fit, t->loss = c.best.loss;
+    return true;
+}
+
+// Along one axis: 1 a line, 0 a curve, -1 too level to tell.
+static int straight(const build *b, const depth_code *c, int x, int y, int dx, int dy)
+{
+    double z[3], rounding = b->depth.type == SAMPLE_HALF ? 0x1p-11 : 0x1p-24;
+    for (int k = 0; k < 3; k++) {
+        int u = x + (k - 1) * dx, v = y + (k - 1) * dy;
+        z[k] = u >= 0 && v >= 0 && u < b->g->width && v < b->g->height ? distance(b, c, u, v) : 0.0;
+        if (!(z[k] > 0.0)) return 0;
+        if (b->g->camera.kind == CAMERA_PERSPECTIVE) z[k] = 1.0 / z[k];
+    }
+    double first = fabs(z[2] - z[0]), second = fabs(z[2] - 2.0 * z[1] + z[0]);
+    if (first < 100.0 * rounding * fabs(z[1]) || first < 0.01 * fabs(z[1])) return -1;
+    return second < bend * first + 4.0 * rounding * fabs(z[1]);
+}
+
+static void ask_planes(const build *b, trial *t)
+{
+    int shorter = b->g->width < b->g->height ? b->g->width : b->g->height, step = shorter / 40 > 2 ? shorter / 40 : 2;
+    size_t stride = b->point_count / SAMPLES + 1, flat = 0, all = 0;
+    for (size_t i = 0; i < b->point_count; i += stride) {
+        int x = (int)b->points[i].x, y = (int)b->points[i].y;
+        int across = straight(b, &t->code, x, y, step, 0), down = straight(b, &t->code, x, y, 0, step);
+        all++;
+        flat += across && down && (across > 0 || down > 0);
+    }
+    t->flat = all ? (double)flat / (double)all : 0.0;
+}
+
+static int list_trials(const build *b, const values *s, trial list[MOST], bool *range)
+{
+    const depth_code own = {.kind = b->g->depth_kind, .sign = b->depth_code.sign};
+    double near, far;
+    int n = 0;
+    list[n++].code = own;
+    if (b->g->camera.kind == CAMERA_PERSPECTIVE) {
+        list[n].code = own;
+        list[n++].code.kind = own.kind == DEPTH_RADIAL ? DEPTH_PLANAR : DEPTH_RADIAL;
+    }
+    list[n].code = own;
+    list[n++].code.kind = DEPTH_INVERSE;
+    *range = find_range(b, &near, &far);
+    for (int k = DEPTH_LINEAR; *range && s->beyond == 0 && own.sign > 0.0 && k < DEPTH_KINDS; k++) {
+        if (!(near > 0.0) && k >= DEPTH_ZBUFFER) break;
+        list[n++].code = (depth_code){.kind = (depth_kind)k, .sign = 1.0, .near = near, .far = far};
+    }
+    for (int i = 0; i < n; i++) list[i].fit = (double)NAN, list[i].loss = INFINITY, list[i].flat = 0.0;
+    return n;
+}
+
+// By the normals where they know one kind's surfaces, else by planes, else the renderer's.
+static int choose(const trial *list, int n, bool *confirmed)
+{
+    int best = 0;
+    for (int i = 1; i < n; i++)
+        if (list[i].loss < list[best].loss && list[0].loss - list[i].loss > gain[0] + gain[1] * list[0].loss &&
+            list[i].fit >= fits)
+            best = i;
+    *confirmed = list[best].fit >= fits;
+    if (*confirmed) return best;
+    best = 0;
+    for (int i = 1; i < n; i++)
+        if (list[i].flat > list[best].flat && list[i].flat > many_planes && list[i].flat > 3.0 * list[0].flat) best = i;
+    *confirmed = list[best].flat > many_planes;
+    return best;
+}
+
+static void tell(build *b, const trial *list, int n, int best)
+{
+    verdict *v = &b->g->depth_verdict;
+    bool by_normals = list[best].fit == list[best].fit;
+    v->measure = by_normals ? "median cosine of the normals with its surfaces" : "share of pixels on planes";
+    v->fit = by_normals ? list[best].fit : list[best].flat, v->next = (double)NAN;
+    for (int i = 0; i < n; i++) {
+        double fit = by_normals ? list[i].fit : list[i].flat, loss = by_normals ? list[i].loss : 1.0 - list[i].flat;
+        verdict_try(v, depth_text(list[i].code.kind), fit, loss);
+        if (i != best && !(fit <= v->next)) v->next = fit;
+    }
+    snprintf(v->reading, sizeof v->reading, "%s%s", list[best].code.sign < 0.0 ? "negative " : "",
+             depth_text(list[best].code.kind));
+    build_note(b, "depth: %s, %s %.3f (next best %.3f)", v->reading, by_normals ? "normals fit" : "on planes", v->fit, v->next);
+}
+
+static void doubt(build *b, const char *why)
+{
+    b->g->depth_verdict.doubtful = true;
+    log_warn(b->log, "depth-doubt",
+             "the depth's values all lie within 0..1 and %s; it is taken as %s (--depth-kind says otherwise, --depth-range NEAR "
+             "FAR where it runs between two distances)",
+             why, b->g->depth_verdict.reading);
+}
+
+// Values within 0..1 may be distances of a small scene, or no distances at all.
+static bool question(build *b, const values *s, const trial *best, bool confirmed, bool range)
+{
+    bool unit = s->beyond == 0 && s->negative == 0 && s->within > 0, ones = 2000 * s->one > s->looked_at;
+    if (!unit || best->code.kind == DEPTH_INVERSE || depth_needs_range(best->code.kind)) return true;
+    if (confirmed && ones)
+        doubt(b, "1 stands for nothing: its unit may be the distance of the far plane, in which radii are then measured");
+    else if (!confirmed && ones)
+        return no_range(b, range ? "the depth runs from 0 to 1 and neither normals nor planes tell how"
+                                 : "the depth runs from 0 to 1, which is no distance, and its near and far are not known");
+    else if (!confirmed)
+        doubt(b, "neither normals nor planes confirm a kind");
+    return true;
+}
+
+bool depth_settle(build *b)
+{
+    gbuffer *g = b->g;
+    verdict *v = &g->depth_verdict;
+    v->present = b->has_depth, v->fit = v->next = (double)NAN;
+    if (b->has_position || !b->has_depth || b->point_count == 0) return true;
+    if (b->r->depth_told) {
+        snprintf(v->reading, sizeof v->reading, "%s, as told", depth_text(b->r->depth));
+        return true;
+    }
+    trial list[MOST];
+    values s = look(b);
+    bool confirmed, range;
+    int n = list_trials(b, &s, list, &range);
+    evidence *scratch = mem_zero(1, sizeof *scratch, b->e);
+    bool ok = scratch != NULL;
+    for (int i = 0; ok && i < n; i++) {
+        if (b->has_normal) ok = ask_normals(b, &list[i], scratch);
+        ask_planes(b, &list[i]);
+    }
+    free(scratch);
+    if (!ok) return false;
+    int best = choose(list, n, &confirmed);
+    tell(b, list, n, best);
+    if (!question(b, &s, &list[best], confirmed, range)) return false;
+    depth_kind kind = list[best].code.kind;
+    if (kind <= DEPTH_RADIAL) {
+        g->depth_kind = kind;
+        return true;
+    }
+    g->depth_kind = DEPTH_PLANAR;
+    b->depth_code = list[best].code;
+    return validity_find(b);
+}
