@@ -21,7 +21,7 @@
 
 static int fail(const options *o, const error *e)
 {
-    char text[1600];
+    char text[ERROR_TEXT];
     err_format(e, text, sizeof text);
     text_one_line(text);
     fprintf(stderr, "ssdo-filter: %s\n", text);

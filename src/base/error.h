@@ -22,15 +22,17 @@ typedef enum error_code {
 
 typedef struct error {
     error_code code;
-    char message[768]; // without file name; a complete sentence without the final full stop
-    char file[512];    // "" when no file is concerned
-    char channel[256]; // "" when no channel is concerned
+    char message[4096]; // without file name; a complete sentence without the final full stop; lists of channels are long
+    char file[512];     // "" when no file is concerned
+    char channel[256];  // "" when no channel is concerned
 } error;
 
 // Fills *e (unless it holds an error already, or is NULL) and returns false, so that `return err_set(...)` reads well.
 // file and channel may be NULL.
 bool err_set(error *e, error_code code, const char *file, const char *channel, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
+
+enum { ERROR_TEXT = 4096 + 512 + 256 + 64 }; // room for all of it
 
 // "file: message (channel 'c')" into buf, always terminated.
 void err_format(const error *e, char *buf, unsigned long size);

@@ -146,11 +146,11 @@ const option_row option_rows[] = {
      .help = "Darkens the composite behind the edges of nearer objects: it is multiplied by 1 + S times the depthmask layer, at least 0."},
 
     {.group = GROUP_CHANNELS, .name = "position", .argument = "C", .kind = OPT_TEXT, .offset = FIELD(role_names[POSITION]),
-     .pixels = true, .help = "Layer or channels of the position pass."},
+     .pixels = true, .help = "Layer or channels of the position pass, as --explain prints them: a layer, PART.LAYER, or three channels with commas between. Here and below, of a stereo file: of the view that is being filtered. A name that several channels have is refused."},
     {.group = GROUP_CHANNELS, .name = "normal", .argument = "C", .kind = OPT_TEXT, .offset = FIELD(role_names[NORMAL]),
      .pixels = true, .help = "Layer or channels of the normal pass."},
     {.group = GROUP_CHANNELS, .name = "depth", .argument = "C", .kind = OPT_TEXT, .offset = FIELD(role_names[DEPTH]),
-     .pixels = true, .help = "Channel of the depth pass."},
+     .pixels = true, .help = "Channel of the depth pass, as --explain prints it: CHANNEL, or PART.CHANNEL in a file of several parts; or its layer."},
     {.group = GROUP_CHANNELS, .name = "albedo", .argument = "C", .kind = OPT_TEXT, .offset = FIELD(role_names[ALBEDO]),
      .pixels = true, .help = "Layer or channels of the albedo pass."},
     {.group = GROUP_CHANNELS, .name = "beauty", .argument = "C", .kind = OPT_TEXT, .offset = FIELD(role_names[BEAUTY]),

@@ -50,6 +50,7 @@ typedef struct exr_part {
     int compression; // exr_compression_t's value
     bool lossy;      // B44, B44A, PXR24, DWAA, DWAB: re-encoding would lose more, so it is stored as ZIP
     bool tiled;
+    bool deep;             // its pixels cannot be looked at: no channel is ever loaded
     exr_channel *channels; // in the file's order
     int channel_count;
 } exr_part;

@@ -55,7 +55,9 @@ static void pass_name(const char *stem, size_t common, char *out)
 // The picture itself keeps its plain R G B A.
 static bool is_picture(const char *name)
 {
-    static const char *const names[] = {"", "beauty", "rgba", "rgb", "combined", "image", "main", "ci", "c"};
+    // color, colour, noisy, hdr: as denoisers and their training sets call the picture that is still to be denoised.
+    static const char *const names[] = {"",  "beauty", "rgba",   "rgb",   "combined", "image",  "main", "ci",
+                                        "c", "color",  "colour", "noisy", "hdr",      "render", "final"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcasecmp(name, names[i]) == 0) return true;
     return false;

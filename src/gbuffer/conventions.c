@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "gbuffer/layers.h"
+
 // Blender writes 1e10 where nothing is hit and 1e11 outside a border render; half and other renderers' infinities lie above too.
 enum { FAR_AWAY = 1000000000 };
 
@@ -267,4 +269,14 @@ const convention *convention_named(const char *name)
     for (int i = 0; i < convention_count; i++)
         if (name && strcmp(conventions[i].name, name) == 0) return &conventions[i];
     return &conventions[convention_count - 1];
+}
+
+bool convention_knows(role r, const char *name)
+{
+    for (int i = 0; i < convention_count; i++)
+        for (int p = 0; p < CONVENTION_PATTERNS && conventions[i].patterns[r][p]; p++) {
+            const char *pattern = conventions[i].patterns[r][p];
+            if (pattern[0] != '/' && pattern[0] != '*' && layers_name_is(name, pattern)) return true;
+        }
+    return false;
 }

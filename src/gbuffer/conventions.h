@@ -1,12 +1,14 @@
 // What renderers call their channels and what they mean by them: one row a renderer. Everything a row says about meaning is a
 // first guess, which measurement (positions.c, normals.c) may overrule and an option always does.
 //
-// A pattern is matched without regard to case against a channel group, that is a layer with its components:
-//   "Position"   a layer of that name, or one that ends in ".Position": what stands before it is the view layer. The layer's name
-//                is the channel's name up to its last dot, preceded by the part's name in a multi-part file. Components are
-//                XYZ, RGB or red green blue for three; one of V Z X R Y T, red or nothing for one.
+// A pattern is matched without regard to case, and to what joins the words of a name (space, _, -), against a channel group, that
+// is a layer with its components:
+//   "Position"   a layer of that name, or one that ends in ".Position" or ":Position": what stands before it is the view layer.
+//                The layer's name is the channel's name up to its last dot, preceded by the part's name in a multi-part file.
+//                Components are XYZ, RGB or red green blue for three; one of V Z X R Y T, red or nothing for one.
 //   "depth/Z"    the same, and only this component.
-//   "/"          the unnamed layer, whose channels have no dot (R, G, B, A); "/Z" its channel Z.
+//   "/"          the unnamed layer, whose channels have no dot (R, G, B, A), or the part that is the picture (picture.h); "/Z"
+//                its channel Z, unless X and Y stand beside it.
 //   "*/T"        any layer with the component T: for renderers whose layers are named by the user.
 // Earlier patterns of a role are preferred. Of the rows, one whose header mark is present wins; else the one that recognises most
 // roles (exact case counts a little more), the plain row winning ties. Roles the row does not find are looked for with the plain
@@ -54,5 +56,8 @@ extern const int convention_count;
 
 // The row of a resolution's `convention`; the plain row when there is none of that name.
 const convention *convention_named(const char *name);
+
+// Whether any row has the name as a layer of the role.
+bool convention_knows(role r, const char *name);
 
 #endif

@@ -1,5 +1,6 @@
 #include "gbuffer/layers.h"
 
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +14,12 @@ static const char *component_of(const char *text)
     static const char *const names[][2] = {{"r", "R"},    {"g", "G"},     {"b", "B"}, {"a", "A"},   {"x", "X"},
                                            {"y", "Y"},    {"z", "Z"},     {"v", "V"}, {"red", "R"}, {"green", "G"},
                                            {"blue", "B"}, {"alpha", "A"}, {"t", "T"}};
+    char plain[16];
+    size_t n = strlen(text);
+    if (n > 2 && n < sizeof plain && text[0] == '[' && text[n - 1] == ']') { // "[red]"
+        snprintf(plain, sizeof plain, "%.*s", (int)(n - 2), text + 1);
+        text = plain;
+    }
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcasecmp(text, names[i][0]) == 0) return names[i][1];
     return "";
@@ -31,19 +38,66 @@ static void take_view(char *layer, char *view, size_t size)
         }
 }
 
+// What writers put between the words of one name.
+static bool is_joint(char c) { return c == '_' || c == '-' || c == ' '; }
+
 static bool starts_with_name(const char *layer, const char *name)
 {
     size_t n = strlen(name);
     return strncasecmp(layer, name, n) == 0 && (layer[n] == 0 || layer[n] == '.');
 }
 
-// A part's name without the view that multi-part stereo files append to keep names distinct.
-static void part_layer(const exr_part *part, char *buf, size_t size)
+// Cuts the view's word off the end of a part's name, or off its beginning: "depth_left", "depth.left", "left.depth".
+static bool cut_view(char *name, const char *view)
 {
-    snprintf(buf, size, "%s", part->name ? part->name : "");
-    size_t n = strlen(buf), v = part->view ? strlen(part->view) : 0;
-    if (v > 0 && n >= v && strcasecmp(buf + n - v, part->view) == 0 && (n == v || buf[n - v - 1] == '.'))
-        buf[n == v ? 0 : n - v - 1] = 0;
+    size_t n = strlen(name), v = strlen(view);
+    if (v == 0 || n < v) return false;
+    char *tail = name + n - v;
+    if (strcasecmp(tail, view) == 0 && (n == v || tail[-1] == '.' || is_joint(tail[-1]))) {
+        *(n == v ? name : tail - 1) = 0;
+        return true;
+    }
+    if (n == v || strncasecmp(name, view, v) != 0 || !(name[v] == '.' || is_joint(name[v]))) return false;
+    memmove(name, name + v + 1, n - v);
+    return true;
+}
+
+static bool has_part(const exr_file *file, const char *name)
+{
+    for (int p = 0; p < file->part_count; p++)
+        if (file->parts[p].name && strcasecmp(file->parts[p].name, name) == 0) return true;
+    return false;
+}
+
+// The layer that a part is, without the view that multi-part stereo files append to keep names distinct. view receives the one
+// that a name alone tells: of two parts of one layer, "depth_left" and "depth_right".
+static void part_layer(const exr_file *file, const exr_part *part, char *name, char *view, size_t view_size)
+{
+    static const char *const sides[] = {"left", "right"};
+    snprintf(name, 256, "%s", part->name ? part->name : "");
+    view[0] = 0;
+    if (part->view && part->view[0]) {
+        cut_view(name, part->view);
+        return;
+    }
+    cut_view(name, "main"); // Nuke's only view
+    for (int i = 0; i < 2; i++) {
+        char cut[256], twin[300];
+        snprintf(cut, sizeof cut, "%s", name);
+        if (!cut_view(cut, sides[i])) continue;
+        size_t n = strlen(cut);
+        bool behind = strncasecmp(name, cut, n) == 0 && n > 0;
+        if (behind)
+            snprintf(twin, sizeof twin, "%s%c%s", cut, name[n], sides[1 - i]);
+        else if (n > 0)
+            snprintf(twin, sizeof twin, "%s%c%s", sides[1 - i], name[strlen(sides[i])], cut);
+        else
+            snprintf(twin, sizeof twin, "%s", sides[1 - i]);
+        if (!has_part(file, twin)) continue;
+        snprintf(name, 256, "%s", cut);
+        snprintf(view, view_size, "%s", sides[i]);
+        return;
+    }
 }
 
 static void fill(const exr_file *file, int p, int c, layer_entry *out)
@@ -53,7 +107,7 @@ static void fill(const exr_file *file, int p, int c, layer_entry *out)
     exr_name_without_view(&part->channels[c], name, sizeof name);
     const char *dot = strrchr(name, '.');
     const char *component = component_of(dot ? dot + 1 : name);
-    char own[256], prefix[256] = "";
+    char own[256], prefix[256] = "", part_view[32] = "";
     size_t length = component[0] ? (dot ? (size_t)(dot - name) : 0) : strlen(name);
     snprintf(own, sizeof own, "%.*s", (int)length, name);
     *out = (layer_entry){.ref = {p, c}};
@@ -62,8 +116,12 @@ static void fill(const exr_file *file, int p, int c, layer_entry *out)
         snprintf(out->view, sizeof out->view, "%s", part->channels[c].view ? part->channels[c].view : "");
     else
         take_view(own, out->view, sizeof out->view);
-    if (part->view && part->view[0]) snprintf(out->view, sizeof out->view, "%.31s", part->view);
-    if (file->part_count > 1) part_layer(part, prefix, sizeof prefix);
+    if (file->part_count > 1) part_layer(file, part, prefix, part_view, sizeof part_view);
+    if (part->view && part->view[0])
+        snprintf(out->view, sizeof out->view, "%.31s", part->view);
+    else if (part_view[0])
+        snprintf(out->view, sizeof out->view, "%s", part_view);
+    out->bare = !own[0];
     bool joined = prefix[0] && own[0] && !starts_with_name(own, prefix);
     if (joined)
         snprintf(out->layer, sizeof out->layer, "%s.%s", prefix, own);
@@ -93,10 +151,10 @@ bool layers_index(const exr_file *file, const char *view, layer_index *out, erro
 {
     int total = 0;
     for (int p = 0; p < file->part_count; p++) total += file->parts[p].channel_count;
-    *out = (layer_index){.entries = mem_zero((size_t)total, sizeof *out->entries, e)};
+    *out = (layer_index){.file = file, .entries = mem_zero((size_t)total, sizeof *out->entries, e)};
     if (!out->entries) return false;
     for (int p = 0; p < file->part_count; p++)
-        for (int c = 0; c < file->parts[p].channel_count; c++) {
+        for (int c = 0; c < file->parts[p].channel_count && !file->parts[p].deep; c++) {
             layer_entry *entry = &out->entries[out->count];
             fill(file, p, c, entry);
             if (view && entry->view[0] && strcmp(entry->view, view) != 0) continue;
@@ -112,15 +170,38 @@ void layers_free(layer_index *index)
     *index = (layer_index){0};
 }
 
-// Whether the entry's layer is `name` or ends in ".name"; *before receives the length of what stands before it.
+// Whether the layer is `name` or ends in ".name" (or ":name"), whatever its case and whatever joins its words; *before receives
+// the length of what stands before it.
 static bool ends_in(const char *layer, const char *name, size_t *before, bool *exact)
 {
-    size_t n = strlen(name), l = strlen(layer);
-    if (n > l || (n == 0 && l > 0)) return false;
-    const char *tail = layer + l - n;
-    if (strcasecmp(tail, name) != 0 || (l > n && tail[-1] != '.')) return false;
-    *exact = strcmp(tail, name) == 0;
-    *before = l > n ? l - n - 1 : 0;
+    const char *l = layer + strlen(layer), *n = name + strlen(name);
+    *before = 0, *exact = true;
+    if (n == name) return l == layer;
+    for (;; l--, n--) {
+        while (l > layer && is_joint(l[-1])) l--;
+        while (n > name && is_joint(n[-1])) n--;
+        if (n == name) break;
+        if (l == layer || tolower((unsigned char)l[-1]) != tolower((unsigned char)n[-1])) return false;
+    }
+    if (l > layer && l[-1] != '.' && l[-1] != ':') return false;
+    *exact = strcmp(l, name) == 0;
+    *before = l > layer ? (size_t)(l - layer) - 1 : 0;
+    return true;
+}
+
+bool layers_name_is(const char *text, const char *name)
+{
+    size_t before;
+    bool exact;
+    return ends_in(text, name, &before, &exact) && before == 0;
+}
+
+static bool matches(const layer_entry *entry, const char *name, size_t *before, bool *exact)
+{
+    *before = 0, *exact = true;
+    if (strcmp(name, "*") == 0) return true;
+    if (name[0] || entry->picture == PICTURE_NO) return ends_in(entry->layer, name, before, exact);
+    if (entry->picture == PICTURE_OF_SEVERAL) *before = strlen(entry->layer);
     return true;
 }
 
@@ -143,24 +224,34 @@ static channel_ref find_component(const layer_index *index, const layer_entry *l
     return (channel_ref){-1, -1};
 }
 
-// The channels of the entry's layer: a full set of three, or the likeliest scalar. only: this component, or "".
-static bool collect(const layer_index *index, const layer_entry *like, int components, const char *only, layer_group *out)
+bool layers_has(const layer_index *index, const layer_entry *like, const char *components)
 {
-    static const char *const triples[2][3] = {{"X", "Y", "Z"}, {"R", "G", "B"}};
-    static const char *const scalars[] = {"V", "Z", "X", "R", "", "Y", "T"};
-    out->components = components;
-    if (components == 3) {
-        for (int s = 0; s < 2; s++) {
-            bool all = true;
-            for (int c = 0; c < 3; c++) {
-                out->channels[c] = find_component(index, like, triples[s][c]);
-                all = all && out->channels[c].part >= 0;
-            }
-            if (all) return true;
-        }
-        return false;
+    for (const char *c = components; *c; c++)
+        if (find_component(index, like, (const char[]){*c, 0}).part < 0) return false;
+    return true;
+}
+
+static bool collect_three(const layer_index *index, const layer_entry *like, layer_kind kind, layer_group *out)
+{
+    // The nameless X, Y and Z are no R, G and B: positions, or a picture in CIE's colour space.
+    const char *sets[2] = {kind == LAYER_COLOUR ? "RGB" : "XYZ", kind == LAYER_VECTOR ? "RGB" : like->layer[0] ? "XYZ" : NULL};
+    for (int s = 0; s < 2 && sets[s]; s++) {
+        if (!layers_has(index, like, sets[s])) continue;
+        for (int c = 0; c < 3; c++) out->channels[c] = find_component(index, like, (const char[]){sets[s][c], 0});
+        return true;
     }
+    return false;
+}
+
+// The channels of the entry's layer: a full set of three, or the likeliest scalar. only: this component, or "".
+static bool collect(const layer_index *index, const layer_entry *like, layer_kind kind, const char *only, layer_group *out)
+{
+    static const char *const scalars[] = {"V", "Z", "X", "R", "", "Y", "T"};
+    out->components = kind == LAYER_SCALAR ? 1 : 3;
+    if (kind != LAYER_SCALAR) return collect_three(index, like, kind, out);
     if (only[0]) {
+        // Beside X and Y, Z is a vector's, and no depth.
+        if (like->bare && strcasecmp(only, "Z") == 0 && layers_has(index, like, "XY")) return false;
         out->channels[0] = find_component(index, like, component_of(only));
         return out->channels[0].part >= 0;
     }
@@ -178,7 +269,7 @@ static bool first_of_layer(const layer_index *index, int i)
     return true;
 }
 
-int layers_match(const layer_index *index, const char *pattern, int components, layer_group *out, int most)
+int layers_match(const layer_index *index, const char *pattern, layer_kind kind, layer_group *out, int most)
 {
     char name[LAYER_KEY];
     const char *slash = strchr(pattern, '/');
@@ -188,27 +279,34 @@ int layers_match(const layer_index *index, const char *pattern, int components, 
         const layer_entry *entry = &index->entries[i];
         layer_group group = {0};
         size_t before = 0;
-        bool any = strcmp(name, "*") == 0;
-        if (any) before = 0, group.exact = true;
-        if ((!any && !ends_in(entry->layer, name, &before, &group.exact)) || !first_of_layer(index, i)) continue;
-        if (!collect(index, entry, components, slash ? slash + 1 : "", &group)) continue;
+        if (!matches(entry, name, &before, &group.exact) || !first_of_layer(index, i)) continue;
+        if (!collect(index, entry, kind, slash ? slash + 1 : "", &group)) continue;
         make_key(entry, before, group.key);
         out[found++] = group;
     }
     return found;
 }
 
-bool layers_exact(const layer_index *index, const char *layer, int components, layer_group *out)
+// The entry's layer as the command line may call it: by its name, with its view, by the part's name as the file has it.
+static bool is_called(const layer_index *index, const layer_entry *entry, const char *layer, bool any_case)
+{
+    int (*compare)(const char *, const char *) = any_case ? strcasecmp : strcmp;
+    char full[LAYER_NAME + 48];
+    snprintf(full, sizeof full, "%s%s%s", entry->layer, entry->view[0] ? "." : "", entry->view);
+    if (compare(entry->layer, layer) == 0 || compare(full, layer) == 0) return true;
+    const char *part = index->file->parts[entry->ref.part].name;
+    return entry->bare && part && part[0] && compare(part, layer) == 0;
+}
+
+bool layers_exact(const layer_index *index, const char *layer, layer_kind kind, layer_group *out)
 {
     for (int any_case = 0; any_case < 2; any_case++)
         for (int i = 0; i < index->count; i++) {
             const layer_entry *entry = &index->entries[i];
-            char full[LAYER_NAME + 48];
-            snprintf(full, sizeof full, "%s%s%s", entry->layer, entry->view[0] ? "." : "", entry->view);
-            int (*compare)(const char *, const char *) = any_case ? strcasecmp : strcmp;
-            if (compare(entry->layer, layer) != 0 && compare(full, layer) != 0) continue;
+            if (!is_called(index, entry, layer, any_case)) continue;
             *out = (layer_group){0};
-            if (collect(index, entry, components, "", out)) return true;
+            make_key(entry, 0, out->key);
+            if (collect(index, entry, kind, "", out)) return true;
         }
     return false;
 }
@@ -221,19 +319,80 @@ channel_ref layers_sibling(const layer_index *index, channel_ref of, const char 
     return (channel_ref){-1, -1};
 }
 
+void layers_channel_name(const exr_file *file, channel_ref ref, char *buf, size_t size)
+{
+    const exr_part *part = &file->parts[ref.part];
+    const char *name = part->channels[ref.channel].name, *own = part->name ? part->name : "";
+    bool with_part = file->part_count > 1 && own[0] && !starts_with_name(name, own);
+    snprintf(buf, size, "%s%s%s", with_part ? own : "", with_part ? "." : "", name);
+}
+
+// The channel's name is `name`: as the file has it, without the view, or behind the part's name.
+static bool is_channel(const layer_index *index, channel_ref ref, const char *name, bool any_case)
+{
+    int (*compare)(const char *, const char *) = any_case ? strcasecmp : strcmp;
+    const exr_channel *c = &index->file->parts[ref.part].channels[ref.channel];
+    const char *part = index->file->parts[ref.part].name;
+    char other[EXR_NAME_ROOM * 2];
+    if (compare(c->name, name) == 0 || (c->stored && compare(c->stored, name) == 0)) return true;
+    exr_name_without_view(c, other, sizeof other);
+    if (compare(other, name) == 0) return true;
+    snprintf(other, sizeof other, "%s.%s", part ? part : "", c->name);
+    return part && part[0] && compare(other, name) == 0;
+}
+
+int layers_channels(const layer_index *index, const char *name, layer_group *out, int most)
+{
+    int found = 0;
+    for (int any_case = 0; any_case < 2 && found == 0; any_case++)
+        for (int i = 0; i < index->count && found < most; i++) {
+            const layer_entry *entry = &index->entries[i];
+            if (!is_channel(index, entry->ref, name, any_case)) continue;
+            out[found] = (layer_group){.channels = {entry->ref}, .components = 1};
+            make_key(entry, strlen(entry->layer), out[found].key);
+            found++;
+        }
+    return found;
+}
+
+// Appends ", text" to a list of `used` bytes; *more counts what no longer fits.
+static void append(char *buf, size_t size, size_t *used, int *more, const char *text)
+{
+    enum { TAIL = 24 }; // " and 1234 more"
+    if (*more || *used + strlen(text) + TAIL >= size)
+        ++*more;
+    else
+        *used += (size_t)snprintf(buf + *used, size - *used, "%s%s", *used ? ", " : "", text);
+}
+
+// "R G B A", of those components that the layer has.
+static void list_components(const layer_index *index, const layer_entry *like, const char *components, char out[16])
+{
+    size_t used = 0;
+    out[0] = 0;
+    for (const char *c = components; *c; c++)
+        if (find_component(index, like, (const char[]){*c, 0}).part >= 0)
+            used += (size_t)snprintf(out + used, 16 - used, "%s%c", used ? " " : "", *c);
+}
+
 void layers_list(const layer_index *index, char *buf, size_t size)
 {
     size_t used = 0;
+    int more = 0;
     buf[0] = 0;
     for (int i = 0; i < index->count; i++) {
-        if (!first_of_layer(index, i)) continue;
         const layer_entry *entry = &index->entries[i];
-        const char *name = entry->layer[0] ? entry->layer : entry->component;
-        size_t need = strlen(name) + 2;
-        if (used + need + 4 >= size) {
-            snprintf(buf + used, size - used, " ...");
-            return;
+        bool colour = entry->component[0] && strchr("RGBA", entry->component[0]), first = first_of_layer(index, i);
+        char name[LAYER_NAME + 16], set[16];
+        list_components(index, entry, "RGBA", set);
+        if (entry->layer[0] && first) append(buf, size, &used, &more, entry->layer);
+        if (!entry->layer[0] && colour && entry->component[0] == set[strlen(set) - 1]) append(buf, size, &used, &more, set);
+        if (!entry->layer[0] && !colour) append(buf, size, &used, &more, entry->component);
+        // A named layer is its colour or its vector; what it has besides is named too.
+        if (entry->layer[0] && set[0] && !colour && entry->component[0]) {
+            snprintf(name, sizeof name, "%s.%s", entry->layer, entry->component);
+            append(buf, size, &used, &more, name);
         }
-        used += (size_t)snprintf(buf + used, size - used, "%s%s", used ? ", " : "", name);
     }
+    if (more) snprintf(buf + used, size - used, " and %d more", more);
 }

@@ -5,25 +5,28 @@
 #include <strings.h>
 
 #include "gbuffer/conventions.h"
+#include "gbuffer/guess.h"
 #include "gbuffer/layers.h"
+#include "gbuffer/named.h"
+#include "gbuffer/picture.h"
 
 enum { MOST_GROUPS = 64 };
 
 static const struct {
     const char *name, *flag;
-    int components;
+    layer_kind kind;
 } roles[ROLE_COUNT] = {
-    [ROLE_POSITION] = {"position", "--position", 3},
-    [ROLE_NORMAL] = {"normal", "--normal", 3},
-    [ROLE_DEPTH] = {"depth", "--depth", 1},
-    [ROLE_ALBEDO] = {"albedo", "--albedo", 3},
-    [ROLE_BEAUTY] = {"beauty", "--beauty", 3},
-    [ROLE_ALPHA] = {"alpha", "--beauty", 1},
-    [ROLE_ROUGHNESS] = {"roughness", "--roughness", 1},
-    [ROLE_METALLIC] = {"metallic", "--metallic", 1},
-    [ROLE_EMISSION] = {"emission", "--emission", 3},
-    [ROLE_DIFFUSE_DIRECT] = {"diffuse direct", "--beauty", 3},
-    [ROLE_DIFFUSE_INDIRECT] = {"diffuse indirect", "--beauty", 3},
+    [ROLE_POSITION] = {"position", "--position", LAYER_VECTOR},
+    [ROLE_NORMAL] = {"normal", "--normal", LAYER_VECTOR},
+    [ROLE_DEPTH] = {"depth", "--depth", LAYER_SCALAR},
+    [ROLE_ALBEDO] = {"albedo", "--albedo", LAYER_COLOUR},
+    [ROLE_BEAUTY] = {"beauty", "--beauty", LAYER_COLOUR},
+    [ROLE_ALPHA] = {"alpha", "--beauty", LAYER_SCALAR},
+    [ROLE_ROUGHNESS] = {"roughness", "--roughness", LAYER_SCALAR},
+    [ROLE_METALLIC] = {"metallic", "--metallic", LAYER_SCALAR},
+    [ROLE_EMISSION] = {"emission", "--emission", LAYER_COLOUR},
+    [ROLE_DIFFUSE_DIRECT] = {"diffuse direct", "--beauty", LAYER_COLOUR},
+    [ROLE_DIFFUSE_INDIRECT] = {"diffuse indirect", "--beauty", LAYER_COLOUR},
 };
 
 typedef struct search {
@@ -34,6 +37,7 @@ typedef struct search {
     char keys[MOST_GROUPS][LAYER_KEY]; // the view layers: what stands before a position (or, without any, a depth)
     int key_count;
     const char *key;
+    log_t *log;
     error *e;
 } search;
 
@@ -41,7 +45,7 @@ const char *role_name(role r) { return roles[r].name; }
 
 static int match(const search *s, const char *pattern, role r, layer_group *groups)
 {
-    return layers_match(&s->index, pattern, roles[r].components, groups, MOST_GROUPS);
+    return layers_match(&s->index, pattern, roles[r].kind, groups, MOST_GROUPS);
 }
 
 // 4 for a role some pattern finds, 5 if it does so in the same case.
@@ -143,6 +147,21 @@ static const char *key_of_override(const search *s)
     return best;
 }
 
+// Of several parts that each hold a picture with its depth the first is the file's own, which is worth a word.
+static const char *first_picture(const search *s)
+{
+    for (int k = 0; k < s->key_count; k++) {
+        bool picture = false;
+        for (int i = 0; i < s->index.count; i++)
+            picture |= s->index.entries[i].picture == PICTURE_OF_SEVERAL && strcmp(s->index.entries[i].layer, s->keys[k]) == 0;
+        if (!picture) return NULL;
+    }
+    log_warn(s->log, "pictures",
+             "%s: several parts hold a picture and its depth; '%s' is taken, the first (--view-layer names another)",
+             s->file->path, s->keys[0]);
+    return s->keys[0];
+}
+
 static bool choose_key(search *s)
 {
     gather_keys(s, ROLE_POSITION);
@@ -165,16 +184,28 @@ static bool choose_key(search *s)
         return true;
     }
     s->key = key_of_override(s);
+    if (!s->key) s->key = first_picture(s);
     return s->key || wrong_key(s, "the file holds several view layers");
 }
 
+// A channel serves one role, unless the command line says otherwise.
+static bool is_taken(const resolution *r, const layer_group *group)
+{
+    for (int i = 0; i < ROLE_COUNT; i++)
+        for (int c = 0; c < r->components[i]; c++)
+            for (int k = 0; k < group->components; k++)
+                if (r->channels[i][c].part == group->channels[k].part && r->channels[i][c].channel == group->channels[k].channel)
+                    return true;
+    return false;
+}
+
 // The group of the key among those a pattern finds. key NULL: the only group there is, if it is of no other view layer.
-static bool pick(const search *s, const char *pattern, role r, const char *key, layer_group *out)
+static bool pick(const search *s, const char *pattern, role r, const char *key, const resolution *so_far, layer_group *out)
 {
     layer_group groups[MOST_GROUPS];
     int n = match(s, pattern, r, groups);
     for (int g = 0; g < n; g++)
-        if (key ? strcmp(groups[g].key, key) == 0 : n == 1 && !known_key(s, groups[g].key)) {
+        if ((key ? strcmp(groups[g].key, key) == 0 : n == 1 && !known_key(s, groups[g].key)) && !is_taken(so_far, &groups[g])) {
             *out = groups[g];
             return true;
         }
@@ -182,62 +213,19 @@ static bool pick(const search *s, const char *pattern, role r, const char *key, 
 }
 
 // *row and *pattern receive what found it.
-static bool detect(const search *s, role r, layer_group *out, const convention **row, const char **pattern)
+static bool detect(const search *s, role r, const resolution *so_far, layer_group *out, const convention **row,
+                   const char **pattern)
 {
     const char *const scopes[3] = {s->key, "", NULL};
     const convention *rows[2] = {s->row, s->plain};
     for (int scope = 0; scope < 3; scope++)
         for (int i = 0; i < 2; i++)
             for (int p = 0; p < CONVENTION_PATTERNS && rows[i]->patterns[r][p]; p++)
-                if (pick(s, rows[i]->patterns[r][p], r, scopes[scope], out)) {
+                if (pick(s, rows[i]->patterns[r][p], r, scopes[scope], so_far, out)) {
                     *row = rows[i], *pattern = rows[i]->patterns[r][p];
                     return true;
                 }
     return false;
-}
-
-static bool one_channel(const search *s, const char *name, channel_ref *out)
-{
-    for (int any_case = 0; any_case < 2; any_case++)
-        for (int p = 0; p < s->file->part_count; p++)
-            for (int c = 0; c < s->file->parts[p].channel_count; c++)
-                if ((any_case ? strcasecmp : strcmp)(s->file->parts[p].channels[c].name, name) == 0) {
-                    *out = (channel_ref){p, c};
-                    return true;
-                }
-    return false;
-}
-
-// "a.X,b.Y,c.Z": three channels by their full names.
-static bool listed_channels(const search *s, const char *name, int components, layer_group *out)
-{
-    char copy[LAYER_NAME], *rest = copy;
-    snprintf(copy, sizeof copy, "%s", name);
-    out->components = components;
-    for (int c = 0; c < components; c++) {
-        const char *token = strsep(&rest, ",");
-        if (!token || !one_channel(s, token, &out->channels[c])) return false;
-    }
-    return rest == NULL;
-}
-
-static bool override(const search *s, role r, layer_group *out)
-{
-    const char *name = s->options->names[r];
-    int need = roles[r].components;
-    if (listed_channels(s, name, need, out) || layers_exact(&s->index, name, need, out)) return true;
-    if (pick(s, name, r, s->key, out) || pick(s, name, r, NULL, out)) return true;
-    channel_ref ignored;
-    layer_group scalar;
-    bool too_few = need == 3 && (one_channel(s, name, &ignored) || layers_exact(&s->index, name, 1, &scalar));
-    char list[400];
-    layers_list(&s->index, list, sizeof list);
-    if (too_few)
-        return err_set(s->e, ERR_INPUT, s->file->path, name,
-                       "%s needs a layer with the channels X Y Z or R G B (or three channel names with commas between)",
-                       roles[r].flag);
-    return err_set(s->e, ERR_INPUT, s->file->path, name, "%s names no layer or channel of the file, which has %s", roles[r].flag,
-                   list);
 }
 
 static void take(resolution *out, role r, const layer_group *group)
@@ -267,20 +255,46 @@ static albedo_kind albedo_named(const search *s, const convention *row, const ch
     return name && ends_in_any(name, row->diffuse_albedo, count) ? ALBEDO_DIFFUSE : row->albedo;
 }
 
+static bool name_roles(const search *s, resolution *out)
+{
+    const named_search named = {&s->index, s->options, s->key, s->e};
+    for (int r = 0; r < ROLE_COUNT; r++) {
+        layer_group group;
+        for (int c = 0; c < 4; c++) out->channels[r][c] = (channel_ref){-1, -1};
+        if (!s->options->names[r]) continue;
+        if (!named_find(&named, s->options->names[r], roles[r].kind, roles[r].flag, &group)) return false;
+        take(out, (role)r, &group);
+    }
+    return true;
+}
+
+// Of a file whose channels name no geometry: Z without X and Y under any name, which the format calls depth, or what the file's
+// own name says. Depth or position, whatever is found first.
+static void guess_geometry(const search *s, resolution *out)
+{
+    static const role shapes[] = {ROLE_POSITION, ROLE_DEPTH};
+    layer_group group;
+    if (guess_lone_depth(&s->index, &group)) {
+        take(out, ROLE_DEPTH, &group);
+        return;
+    }
+    for (int i = 0; i < 2; i++)
+        if (guess_by_file_name(&s->index, shapes[i], roles[shapes[i]].kind, &group)) {
+            take(out, shapes[i], &group);
+            return;
+        }
+}
+
 static bool find_roles(const search *s, resolution *out)
 {
+    if (!name_roles(s, out)) return false;
     for (int r = 0; r < ROLE_COUNT; r++) {
         layer_group group;
         const char *name = s->options->names[r];
         const convention *row = NULL;
-        for (int c = 0; c < 4; c++) out->channels[r][c] = (channel_ref){-1, -1};
-        if (name) {
-            if (!override(s, (role)r, &group)) return false;
-            take(out, (role)r, &group);
-        } else if (detect(s, (role)r, &group, &row, &name)) {
-            take(out, (role)r, &group);
-        }
+        if (!name && detect(s, (role)r, out, &group, &row, &name)) take(out, (role)r, &group);
         if (r == ROLE_ALBEDO) out->albedo = albedo_named(s, row, name);
+        if (r == ROLE_DEPTH && !out->components[ROLE_POSITION] && !out->components[ROLE_DEPTH]) guess_geometry(s, out);
     }
     // The alpha that belongs to the beauty is the one in its own layer.
     if (out->components[ROLE_BEAUTY] && !s->options->names[ROLE_ALPHA]) {
@@ -292,21 +306,24 @@ static bool find_roles(const search *s, resolution *out)
 
 static bool no_geometry(const search *s)
 {
-    char has[360];
+    char has[LAYERS_TEXT];
     layers_list(&s->index, has, sizeof has);
-    return err_set(
-        s->e, ERR_INPUT, s->file->path, NULL,
-        "no position and no depth found (looked for Position, P, Depth, Z and the like); the file has %s; name them with "
-        "--position or --depth",
-        has);
+    bool vector = false;
+    for (int i = 0; i < s->index.count; i++)
+        vector |= s->index.entries[i].bare && !s->index.entries[i].layer[0] && layers_has(&s->index, &s->index.entries[i], "XYZ");
+    return err_set(s->e, ERR_INPUT, s->file->path, NULL,
+                   "no position and no depth found (looked for Position, P, Depth, Z and the like); the file has %s; %s", has,
+                   vector ? "X, Y and Z alone may be positions or a picture in CIE XYZ: --position X,Y,Z says the former"
+                          : "name them with --position or --depth");
 }
 
 bool resolve_channels(const exr_file *file, const resolve_options *options, resolution *out, log_t *log, error *e)
 {
-    search s = {.file = file, .options = options, .e = e};
+    search s = {.file = file, .options = options, .log = log, .e = e};
     bool done = false;
     *out = (resolution){0};
     if (!layers_index(file, options->view, &s.index, e)) return false;
+    picture_mark(&s.index);
     choose_row(&s);
     if (!choose_key(&s) || !find_roles(&s, out)) goto out;
     bool has_position = out->components[ROLE_POSITION] > 0;
@@ -342,9 +359,10 @@ void resolve_describe(const exr_file *file, const resolution *r, role which, cha
         return;
     }
     const channel_ref *c = r->channels[which];
-    const exr_part *part = &file->parts[c[0].part];
-    const exr_channel *first = &part->channels[c[0].channel];
-    int used = snprintf(buf, size, "%s: %s", roles[which].name, first->name);
+    const exr_channel *first = &file->parts[c[0].part].channels[c[0].channel];
+    char whole[600];
+    layers_channel_name(file, c[0], whole, sizeof whole);
+    int used = snprintf(buf, size, "%s: %s", roles[which].name, whole);
     for (int i = 1; i < r->components[which] && used > 0 && (size_t)used < size; i++) {
         const char *name = file->parts[c[i].part].channels[c[i].channel].name, *dot = strrchr(name, '.');
         used += snprintf(buf + used, size - (size_t)used, "/%s", dot ? dot + 1 : name);

@@ -137,7 +137,7 @@ static double seconds_since(const struct timespec *started)
 
 static void note_failure(batch *b, const slot *s)
 {
-    char text[1600];
+    char text[ERROR_TEXT];
     err_format(&s->error, text, sizeof text);
     log_error(b->j->log, "frame %d: %s", s->frame, text);
     b->failures.frames[b->failures.count++] = s->frame;

@@ -29,7 +29,7 @@ static void add_result(shot_report *s, json_object *o, const frame_result *r)
 void shot_add(shot_report *s, const shot_frame *f)
 {
     if (!s->frames) return;
-    char text[1600];
+    char text[ERROR_TEXT];
     json_object *o = json_object_new_object();
     json_put(o, "frame", json_object_new_int(f->frame));
     json_put_text(o, "status", f->failure ? "failed" : f->why ? "skipped" : "done");

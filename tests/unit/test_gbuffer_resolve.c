@@ -178,6 +178,209 @@ static void test_parts(void **state)
     assert_int_equal(r.channels[ROLE_NORMAL][0].part, 3);
 }
 
+static const char *title_of(const resolution *r, role which)
+{
+    static char line[300];
+    resolve_describe(&file, r, which, line, sizeof line);
+    return line;
+}
+
+// A part is a layer, whatever it is called: RGBA and Z beside it are the picture and its depth.
+static void test_parts_of_any_name(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"rgba", "beauty", "persp", "camera1", "ViewLayer", "left", "main"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char text_of[200];
+        snprintf(text_of, sizeof text_of, "%s:A,B,G,R,Z;N:X,Y,Z;crypto00:R,G,B,A", names[i]);
+        resolution r = resolved(text_of, NULL);
+        assert_int_equal(r.channels[ROLE_DEPTH][0].part, 0);
+        check(&r, ROLE_DEPTH, "Z");
+        check(&r, ROLE_BEAUTY, "R");
+        check(&r, ROLE_ALPHA, "A");
+        assert_int_equal(r.channels[ROLE_BEAUTY][0].part, 0);
+        assert_int_equal(r.channels[ROLE_NORMAL][0].part, 1);
+    }
+    // Gaffer's tests: a depth of any name; a picture with a depth of its own beside the file's.
+    resolution r = resolved("customRgb:B,G,R;customRgba:A,B,G,R;customDepth:Z", NULL);
+    assert_string_equal(title_of(&r, ROLE_DEPTH), "depth: customDepth.Z (part 2, float)");
+    assert_int_equal(r.channels[ROLE_BEAUTY][0].part, 1);
+    r = resolved("rgba.main@main:A,B,G,R;character.main@main:Z,alpha,blue,green,red;depth.main@main:Z", NULL);
+    assert_int_equal(r.channels[ROLE_DEPTH][0].part, 2);
+    assert_int_equal(r.channels[ROLE_BEAUTY][0].part, 0);
+    r = resolved("rgba:A,B,G,R,Z,mask;character:character.A,character.B,character.G,character.R,character.Z", NULL);
+    assert_int_equal(r.channels[ROLE_DEPTH][0].part, 0);
+    assert_int_equal(r.channels[ROLE_BEAUTY][0].part, 0);
+    // Other passes of four channels are no picture.
+    r = resolved("CryptoObject00:R,G,B,A;AO:R,G,B,A;depth:Z", NULL);
+    assert_int_equal(r.components[ROLE_BEAUTY], 0);
+    // Two of equal standing: the first, unless the other is named.
+    const char two[] = "persp:R,G,B,A,Z;side:R,G,B,A,Z";
+    r = resolved(two, NULL);
+    assert_int_equal(r.channels[ROLE_DEPTH][0].part, 0);
+    assert_int_equal(r.channels[ROLE_BEAUTY][0].part, 0);
+    r = resolved(two, &(resolve_options){.view_layer = "side"});
+    assert_int_equal(r.channels[ROLE_DEPTH][0].part, 1);
+    assert_int_equal(r.channels[ROLE_BEAUTY][0].part, 1);
+}
+
+// LAYER_VIEW: OpenEXR's Beachball sample, Nuke's _main, with and without the part's attribute.
+static void test_views_in_part_names(void **state)
+{
+    (void)state;
+    const char joints[] = "_.- ";
+    for (const char *j = joints; *j; j++) {
+        char of[300];
+        snprintf(of, sizeof of,
+                 "rgba%cright@right:A,B,G,R;depth%cleft@left:Z;rgba%cleft@left:A,B,G,R;depth%cright@right:Z;mask%cleft@left:mask",
+                 *j, *j, *j, *j, *j);
+        resolution r = resolved(of, &(resolve_options){.view = "left"});
+        assert_int_equal(r.channels[ROLE_DEPTH][0].part, 1);
+        assert_int_equal(r.channels[ROLE_BEAUTY][0].part, 2);
+        r = resolved(of, &(resolve_options){.view = "right"});
+        assert_int_equal(r.channels[ROLE_DEPTH][0].part, 3);
+        assert_int_equal(r.channels[ROLE_ALPHA][0].part, 0);
+    }
+    resolution r = resolved("rgba_main@main:A,B,G,R;depth_main@main:depth.Z", NULL);
+    check(&r, ROLE_DEPTH, "depth.Z");
+    check(&r, ROLE_BEAUTY, "R");
+    r = resolved("rgba_main:B,G,R;depth_main:depth.Z", NULL);
+    check(&r, ROLE_DEPTH, "depth.Z");
+    check(&r, ROLE_BEAUTY, "R");
+    // No attribute: never the one eye's depth with the other's picture.
+    const char bare[] = "rgba_left:A,B,G,R;depth_right:Z;rgba_right:A,B,G,R;depth_left:Z";
+    error e = {0};
+    assert_false(resolve_channels(with(bare), &(resolve_options){0}, &r, NULL, &e));
+    assert_non_null(strstr(e.message, "'right', 'left'"));
+    r = resolved(bare, &(resolve_options){.view_layer = "left"});
+    assert_int_equal(r.channels[ROLE_DEPTH][0].part, 3);
+    assert_int_equal(r.channels[ROLE_BEAUTY][0].part, 0);
+    // Light groups of those names are no views of the picture.
+    r = resolved("rgba:A,B,G,R,Z;key_left:R,G,B;key_right:R,G,B", NULL);
+    assert_int_equal(r.channels[ROLE_BEAUTY][0].part, 0);
+}
+
+// A name on the command line is the channel of the view that is filtered, or refused.
+static void test_names_and_views(void **state)
+{
+    (void)state;
+    const char stereo[] = "rgba_right@right:A,B,G,R;depth_left@left:Z;rgba_left@left:A,B,G,R;depth_right@right:Z";
+    static const char *const fit[] = {"Z", "depth_right.Z", "depth_right", "depth", "z"};
+    for (size_t i = 0; i < sizeof fit / sizeof *fit; i++) {
+        resolution r = resolved(stereo, &(resolve_options){.view = "right", .names = {[ROLE_DEPTH] = fit[i]}});
+        assert_int_equal(r.channels[ROLE_DEPTH][0].part, 3);
+    }
+    resolution r;
+    error e = {0};
+    resolve_options other = {.view = "right", .names = {[ROLE_DEPTH] = "depth_left.Z"}};
+    assert_false(resolve_channels(with(stereo), &other, &r, NULL, &e));
+    assert_int_equal(e.code, ERR_INPUT);
+    assert_non_null(strstr(e.message, "--view-layer left"));
+    // What --explain prints is a name.
+    r = resolved(stereo, &(resolve_options){.view = "left"});
+    assert_string_equal(title_of(&r, ROLE_DEPTH), "depth: depth_left.Z (part 1, float)");
+
+    // Without views: several parts have the channel.
+    const char parts_of_z[] = "rgba:R,G,B,A;a:Z;b:Z";
+    e = (error){0};
+    assert_false(resolve_channels(with(parts_of_z), &(resolve_options){.names = {[ROLE_DEPTH] = "Z"}}, &r, NULL, &e));
+    assert_non_null(strstr(e.message, "a.Z, b.Z"));
+    r = resolved(parts_of_z, &(resolve_options){.names = {[ROLE_DEPTH] = "b.Z"}});
+    assert_int_equal(r.channels[ROLE_DEPTH][0].part, 2);
+    e = (error){0};
+    assert_false(resolve_channels(with(parts_of_z), &(resolve_options){0}, &r, NULL, &e)); // and no guess between them
+}
+
+// A channel serves one role. X, Y and Z without a name are positions or CIE's colours, and no depth and no picture.
+static void test_one_role_each(void **state)
+{
+    (void)state;
+    resolution r = resolved("X,Y,Z", &(resolve_options){.names = {[ROLE_POSITION] = "X,Y,Z"}});
+    check(&r, ROLE_POSITION, "X");
+    assert_int_equal(r.components[ROLE_DEPTH], 0);
+    assert_int_equal(r.components[ROLE_BEAUTY], 0);
+    error e = {0};
+    assert_false(resolve_channels(with("X,Y,Z"), &(resolve_options){0}, &r, NULL, &e));
+    assert_non_null(strstr(e.message, "CIE XYZ"));
+    assert_non_null(strstr(e.message, "--position X,Y,Z"));
+    r = resolved("A,X,Y,Z,depth.Z", NULL);
+    assert_int_equal(r.components[ROLE_BEAUTY], 0);
+    check(&r, ROLE_DEPTH, "depth.Z");
+    r = resolved("R,G,B,X,Y,Z,depth.V", NULL);
+    check(&r, ROLE_BEAUTY, "R");
+    check(&r, ROLE_DEPTH, "depth.V");
+    r = resolved("R,G,B,A,Z", &(resolve_options){.names = {[ROLE_ALBEDO] = "R,G,B"}});
+    assert_int_equal(r.components[ROLE_BEAUTY], 0);
+    r = resolved("R,G,B,Z", &(resolve_options){.names = {[ROLE_POSITION] = "R,G,B"}});
+    check(&r, ROLE_DEPTH, "Z");
+    assert_int_equal(r.components[ROLE_BEAUTY], 0);
+}
+
+static resolution resolved_as(char *path, const char *description)
+{
+    resolution r;
+    error e = {0};
+    with(description);
+    file.path = path;
+    if (!resolve_channels(&file, &(resolve_options){0}, &r, NULL, &e)) fail_msg("%s: %s", path, e.message);
+    return r;
+}
+
+// One pass in one file, whose name tells.
+static void test_file_names(void **state)
+{
+    (void)state;
+    static char *const depths[] = {"depth.exr",     "a/shot_depth.0001.exr", "Z.exr",
+                                   "depth_rgb.exr", "sh010.Z-Depth.12.exr",  "zdepth.exr"};
+    for (size_t i = 0; i < sizeof depths / sizeof *depths; i++)
+        for (int form = 0; form < 4; form++) {
+            static const char *const channels_of[] = {"Y", "R,G,B", "A,B,G,R", "V"};
+            resolution r = resolved_as(depths[i], channels_of[form]);
+            check(&r, ROLE_DEPTH, form == 0 ? "Y" : form == 3 ? "V" : "R");
+            assert_int_equal(r.components[ROLE_BEAUTY] + r.components[ROLE_ALPHA] + r.components[ROLE_POSITION],
+                             form == 2 ? 1 : 0); // alpha
+        }
+    static char *const positions[] = {"P.exr", "a.b/sh010_P.0001.exr", "world_position.exr", "shot.Position.exr"};
+    for (size_t i = 0; i < sizeof positions / sizeof *positions; i++)
+        for (int form = 0; form < 2; form++) {
+            resolution r = resolved_as(positions[i], form ? "X,Y,Z" : "R,G,B");
+            check(&r, ROLE_POSITION, form ? "X" : "R");
+            assert_int_equal(r.components[ROLE_BEAUTY] + r.components[ROLE_DEPTH], 0);
+        }
+    resolution r;
+    error e = {0};
+    static char other[] = "depths/beauty.exr", reference[] = "Pref.exr";
+    with("R,G,B"), file.path = other;
+    assert_false(resolve_channels(&file, &(resolve_options){0}, &r, NULL, &e)); // the folder's name says nothing
+    e = (error){0};
+    with("R,G,B"), file.path = reference;
+    assert_false(resolve_channels(&file, &(resolve_options){0}, &r, NULL, &e));
+}
+
+// Lists of channels are complete.
+static void test_lists(void **state)
+{
+    (void)state;
+    resolution r;
+    error e = {0};
+    resolve_options wrong = {.names = {[ROLE_DEPTH] = "Depth"}};
+    assert_false(resolve_channels(with("A,B,G,R,Z,N.X,N.Y,N.Z"), &wrong, &r, NULL, &e));
+    assert_non_null(strstr(e.message, "which has R G B A, Z, N"));
+    e = (error){0};
+    assert_false(resolve_channels(with("B,G,R"), &(resolve_options){0}, &r, NULL, &e));
+    assert_non_null(strstr(e.message, "the file has R G B;"));
+    e = (error){0};
+    assert_false(resolve_channels(with("rgba:B,G,R,Z;N:X,Y,Z"), &wrong, &r, NULL, &e));
+    assert_non_null(strstr(e.message, "which has rgba, rgba.Z, N"));
+    // Longer than a line, and longer than any message.
+    char many[4096] = "", *at = many;
+    for (int i = 0; i < MOST; i++) at += sprintf(at, "%sa_rather_long_name_of_a_layer_%02d", i ? "," : "", i);
+    e = (error){0};
+    assert_false(resolve_channels(with(many), &(resolve_options){0}, &r, NULL, &e));
+    assert_non_null(strstr(e.message, "layer_00, "));
+    assert_non_null(strstr(e.message, "layer_39;"));
+}
+
 static void test_view_layers(void **state)
 {
     (void)state;
@@ -250,8 +453,18 @@ static void test_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_blender),     cmocka_unit_test(test_plain),   cmocka_unit_test(test_parts),
-        cmocka_unit_test(test_view_layers), cmocka_unit_test(test_options), cmocka_unit_test(test_nothing),
+        cmocka_unit_test(test_blender),
+        cmocka_unit_test(test_plain),
+        cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_view_layers),
+        cmocka_unit_test(test_options),
+        cmocka_unit_test(test_nothing),
+        cmocka_unit_test(test_parts_of_any_name),
+        cmocka_unit_test(test_views_in_part_names),
+        cmocka_unit_test(test_names_and_views),
+        cmocka_unit_test(test_one_role_each),
+        cmocka_unit_test(test_file_names),
+        cmocka_unit_test(test_lists),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,14 @@
+// Geometry that no channel's name tells. Internal to the room.
+#ifndef SSDO_GBUFFER_GUESS_H
+#define SSDO_GBUFFER_GUESS_H
+
+#include "gbuffer/layers.h"
+
+// The only Z of the file that is no vector's, whatever layer it is in ("customDepth.Z").
+bool guess_lone_depth(const layer_index *index, layer_group *out);
+
+// The nameless channels of a file that holds one pass, if a word of the file's name is one by which the convention table knows
+// the role: "depth.exr", "shot_010_P.0001.exr". One channel, or of three equal ones (as colour outputs store a depth) the first.
+bool guess_by_file_name(const layer_index *index, role r, layer_kind kind, layer_group *out);
+
+#endif
