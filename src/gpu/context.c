@@ -77,6 +77,10 @@ static bool try_display(gpu *g, EGLDisplay display, const char *platform)
     snprintf(g->version, sizeof g->version, "%s", (const char *)glGetString(GL_VERSION));
     snprintf(g->platform, sizeof g->platform, "%s", platform);
     g->software = strstr(g->renderer, "llvmpipe") || strstr(g->renderer, "softpipe") || strstr(g->renderer, "SWR");
+    const char *transfer = getenv("SSDO_TRANSFER");
+    g->mapped = transfer ? strcmp(transfer, "mapped") == 0 : !g->software;
+    g->band_bytes = GPU_BAND_BYTES;
+    g->threads = 1;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &g->max_size);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -178,6 +182,7 @@ void gpu_close(gpu *g)
 {
     if (!g->context) return;
     gpu_programs_free(g);
+    gpu_transfers_free(g);
     if (g->framebuffer) glDeleteFramebuffers(1, &g->framebuffer);
     if (g->vertex_array) glDeleteVertexArrays(1, &g->vertex_array);
     eglMakeCurrent(g->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
@@ -208,6 +213,11 @@ int gpu_list_devices(gpu_device *list, int max)
 bool gpu_finish(gpu *g, const char *what, error *e)
 {
     glFinish();
+    return gpu_check(g, what, e);
+}
+
+bool gpu_check(gpu *g, const char *what, error *e)
+{
     if (g->robust && glGetGraphicsResetStatus() != GL_NO_ERROR)
         return err_set(e, ERR_GL, NULL, NULL, "the GL context was lost during %s; run the frame again", what);
     GLenum code = glGetError();

@@ -13,6 +13,7 @@
 #include "base/log.h"
 
 typedef struct gpu_program_entry gpu_program_entry;
+typedef struct gpu_pixel_buffer gpu_pixel_buffer; // gpu/transfer.h
 
 // What was asked of GL. Uniform blocks, of a few hundred bytes, are not counted.
 typedef struct gpu_counts {
@@ -20,6 +21,8 @@ typedef struct gpu_counts {
     long long uploads, read_backs; // calls that move pictures or buffers
     long long bytes_up, bytes_down;
 } gpu_counts;
+
+enum { GPU_UP_BUFFERS = 3, GPU_BAND_BYTES = 128 << 20 };
 
 typedef struct gpu {
     void *display, *context; // EGLDisplay, EGLContext
@@ -29,6 +32,12 @@ typedef struct gpu {
     int max_size;                     // largest texture side
     bool robust;                      // the context reports resets
     GLuint framebuffer, vertex_array; // of gpu_draw_tiles; 0 before the first
+    bool mapped;       // pictures travel through mapped buffers (gpu/transfer.h): where it is no software renderer,
+                       // or as SSDO_TRANSFER=mapped|direct says, for tests
+    size_t band_bytes; // of a picture that travels, at most
+    int threads;       // that copy what is sent up
+    gpu_pixel_buffer *down, *up[GPU_UP_BUFFERS];
+    int next_up;
     gpu_program_entry *programs;
     int program_count;
     int programs_compiled, programs_cached; // of program_count: made from source, or taken from the cache of an earlier run
@@ -113,6 +122,8 @@ void gpu_barrier(gpu *g, GLbitfield bits);
 
 // Waits for all work, and turns what GL has to say (errors, lost context, out of memory) into an error.
 bool gpu_finish(gpu *g, const char *what, error *e);
+// The same of what is known by now, without waiting.
+bool gpu_check(gpu *g, const char *what, error *e);
 
 // ---- tiles
 // ---------------------------------------------------------------------------------------------------------------------- The

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "gpu/gpu.h"
+#include "gpu/internal.h"
 
 static GLenum transfer_format(GLenum format)
 {
@@ -54,7 +55,7 @@ static size_t pixel_bytes(const gpu_image *image)
     return (f == GL_RED ? 1 : f == GL_RG || f == GL_RG_INTEGER ? 2 : 4) * sizeof(float);
 }
 
-static size_t row_bytes(const gpu_image *image) { return (size_t)image->width * pixel_bytes(image); }
+size_t gpu_image_row_bytes(const gpu_image *image) { return (size_t)image->width * pixel_bytes(image); }
 
 void gpu_image_upload(gpu *g, gpu_image *image, int level, const float *pixels)
 {
@@ -65,19 +66,26 @@ void gpu_image_upload(gpu *g, gpu_image *image, int level, const float *pixels)
     g->counts.bytes_up += (long long)((size_t)w * (size_t)h * pixel_bytes(image));
 }
 
+void gpu_image_upload_rows(gpu *g, gpu_image *image, int y, int rows, const float *pixels)
+{
+    glTextureSubImage2D(image->id, 0, 0, y, image->width, rows, transfer_format(image->format), GL_FLOAT, pixels);
+    g->counts.uploads++;
+    g->counts.bytes_up += (long long)((size_t)rows * gpu_image_row_bytes(image));
+}
+
 void gpu_image_download_rows(gpu *g, const gpu_image *image, int y, int rows, float *pixels)
 {
     gpu_barrier(g, GL_TEXTURE_UPDATE_BARRIER_BIT);
     glGetTextureSubImage(image->id, 0, 0, y, 0, image->width, rows, 1, transfer_format(image->format), GL_FLOAT,
-                         (GLsizei)((size_t)rows * row_bytes(image)), pixels);
+                         (GLsizei)((size_t)rows * gpu_image_row_bytes(image)), pixels);
     g->counts.read_backs++;
-    g->counts.bytes_down += (long long)((size_t)rows * row_bytes(image));
+    g->counts.bytes_down += (long long)((size_t)rows * gpu_image_row_bytes(image));
 }
 
 void gpu_image_download(gpu *g, const gpu_image *image, float *pixels)
 {
     // glGetTextureSubImage counts its buffer in a GLsizei; larger images go in bands.
-    size_t row = row_bytes(image);
+    size_t row = gpu_image_row_bytes(image);
     int most = (int)(0x40000000u / row);
     for (int y = 0; y < image->height; y += most)
         gpu_image_download_rows(g, image, y, image->height - y < most ? image->height - y : most,

@@ -6,6 +6,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "gpu/transfer.h"
+
 // The std140 block of shaders/include/frame.glsl, in its order.
 typedef struct frame_block {
     float lens[4];
@@ -46,7 +48,7 @@ static bool upload(pass_context *c, const char *name, gpu_image *image, GLenum f
 {
     if (!pixels) return true;
     if (!gpu_image_make(c->g, image, format, c->width, c->height, 1, e)) return false;
-    gpu_image_upload(c->g, image, 0, pixels);
+    if (!gpu_image_send(c->g, image, pixels, e)) return false;
     size_t components = format == GL_R32F ? 1 : format == GL_RG32F ? 2 : 4;
     size_t bytes = (size_t)c->width * (size_t)c->height * components * sizeof *pixels;
     c->uploads[c->upload_count++] = (pass_upload){name, bytes};

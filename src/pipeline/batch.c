@@ -16,6 +16,7 @@
 #include "pipeline/report.h"
 #include "pipeline/resume.h"
 #include "pipeline/shot.h"
+#include "pipeline/stopwatch.h"
 
 enum { PATH = 4096, NEIGHBOURS = 256 };
 
@@ -39,7 +40,8 @@ typedef struct batch {
     job *j;
     progress progress;
     frame_list frames;
-    slot slots[BATCH_IN_FLIGHT];
+    slot slots[BATCH_MOST_IN_FLIGHT];
+    int in_flight; // of them
     pthread_mutex_t lock;
     pthread_cond_t changed;
     bool give_up; // a frame failed, and nobody asked to keep going
@@ -52,10 +54,12 @@ bool batch_is(const options *o) { return o->frames || (o->input_count > 0 && pat
 
 static bool stopping(const batch *b) { return job_stopped(b->j) || b->give_up; }
 
+static slot *slot_of(batch *b, int index) { return &b->slots[index % b->in_flight]; }
+
 // Waits for a slot's turn.
 static slot *take(batch *b, int index, state wanted)
 {
-    slot *s = &b->slots[index % BATCH_IN_FLIGHT];
+    slot *s = slot_of(b, index);
     pthread_mutex_lock(&b->lock);
     while (s->state != wanted) pthread_cond_wait(&b->changed, &b->lock);
     pthread_mutex_unlock(&b->lock);
@@ -78,6 +82,14 @@ static bool locked_stopping(batch *b)
     return s;
 }
 
+static bool is_read(batch *b, const slot *s)
+{
+    pthread_mutex_lock(&b->lock);
+    bool is = s->state == WAS_READ;
+    pthread_mutex_unlock(&b->lock);
+    return is;
+}
+
 static void step(batch *b, slot *s)
 {
     s->steps++;
@@ -88,6 +100,12 @@ static void skip(slot *s, const char *why)
 {
     s->skipped = true;
     s->why = why;
+}
+
+static bool prepare(const batch *b, slot *s)
+{
+    s->result.frame = s->frame;
+    return frame_prepare(b->j, &s->result, &s->error);
 }
 
 static void read_slot(batch *b, slot *s, int frame)
@@ -107,17 +125,25 @@ static void read_slot(batch *b, slot *s, int frame)
     const char *why = resume_skips(b->j, s->inputs.list, s->inputs.count, s->output);
     if (why)
         skip(s, why);
-    else if (frame_read_files(b->j, s->inputs.list, s->inputs.count, &s->result, &s->error))
+    else if (frame_read_files(b->j, s->inputs.list, s->inputs.count, &s->result, &s->error) && prepare(b, s))
         step(b, s);
+}
+
+static void count_busy(batch *b, shot_thread who, stopwatch *since)
+{
+    double cpu = 0.0; // the process's: it says nothing of one thread
+    stopwatch_add(since, &b->report.busy_ms[who], &cpu);
 }
 
 static void read_one(batch *b, int i)
 {
     slot *s = take(b, i, EMPTY);
+    stopwatch t = stopwatch_start();
     if (!locked_stopping(b))
         read_slot(b, s, b->frames.frames[i]);
     else
         skip(s, NULL);
+    count_busy(b, SHOT_READER, &t);
     pass_on(b, s, WAS_READ);
 }
 
@@ -172,8 +198,8 @@ static bool write_extras(const batch *b, const slot *s, error *e)
 static void write_slot(batch *b, slot *s, int index)
 {
     if (s->skipped && !s->why) return; // dropped by a stop
-    if (!s->skipped && s->error.code == ERR_NONE && frame_write(b->j, &s->result, s->output, &s->error) &&
-        write_extras(b, s, &s->error))
+    if (!s->skipped && s->error.code == ERR_NONE && frame_convert(b->j, &s->result, &s->error) &&
+        frame_write(b->j, &s->result, s->output, &s->error) && write_extras(b, s, &s->error))
         step(b, s);
     progress_finish(&b->progress, PROGRESS_STEPS - s->steps);
     if (s->error.code != ERR_NONE) {
@@ -191,7 +217,9 @@ static void write_slot(batch *b, slot *s, int index)
 static void write_one(batch *b, int i)
 {
     slot *s = take(b, i, FILTERED);
+    stopwatch t = stopwatch_start();
     write_slot(b, s, i);
+    count_busy(b, SHOT_WRITER, &t);
     pass_on(b, s, EMPTY);
 }
 
@@ -202,24 +230,48 @@ static void *writer(void *arg)
     return NULL;
 }
 
-// The GL thread's share.
+// The GL thread's share of a frame: its layers are on their way when it returns.
+static void begin_slot(batch *b, slot *s)
+{
+    if (s->skipped || s->error.code != ERR_NONE) return;
+    stopwatch t = stopwatch_start();
+    if (!locked_stopping(b) && frame_begin(b->j, &s->result, &s->error)) {
+        step(b, s);
+    } else if (s->error.code == ERR_NONE) {
+        frame_free(&s->result);
+        skip(s, NULL);
+    }
+    count_busy(b, SHOT_GPU, &t);
+}
+
+// Hands a frame on, once its layers have arrived.
+static void end_slot(batch *b, slot *s)
+{
+    stopwatch t = stopwatch_start();
+    if (!s->skipped && s->error.code == ERR_NONE) frame_wait(b->j, &s->result, &s->error);
+    count_busy(b, SHOT_GPU, &t);
+    pass_on(b, s, FILTERED);
+}
+
+// The layers of a frame travel while the next one's passes run, if that has been read.
 static void filter_all(batch *b, bool read_here, bool write_here)
 {
+    slot *under_way = NULL;
     for (int i = 0; i < b->frames.count; i++) {
         if (read_here) read_one(b, i);
-        slot *s = take(b, i, WAS_READ);
-        if (!s->skipped && s->error.code == ERR_NONE) {
-            s->result.frame = s->frame;
-            if (!locked_stopping(b) && frame_filter(b->j, &s->result, &s->error)) {
-                step(b, s);
-            } else if (s->error.code == ERR_NONE) {
-                frame_free(&s->result);
-                skip(s, NULL);
-            }
+        slot *next = slot_of(b, i);
+        if (under_way && !is_read(b, next)) {
+            end_slot(b, under_way);
+            under_way = NULL;
         }
-        pass_on(b, s, FILTERED);
+        slot *s = take(b, i, WAS_READ);
+        begin_slot(b, s);
+        if (under_way) end_slot(b, under_way);
+        under_way = !write_here && frame_is_under_way(&s->result) ? s : NULL;
+        if (!under_way) end_slot(b, s);
         if (write_here) write_one(b, i);
     }
+    if (under_way) end_slot(b, under_way);
 }
 
 static bool list_frames(const options *o, frame_list *out, error *e)
@@ -330,6 +382,7 @@ bool batch_run(job *j, error *e)
     pthread_t threads[2];
     if (!b) return false;
     b->j = j;
+    b->in_flight = j->g.mapped ? BATCH_MOST_IN_FLIGHT : BATCH_IN_FLIGHT;
     pthread_mutex_init(&b->lock, NULL);
     pthread_cond_init(&b->changed, NULL);
     bool ok = list_frames(j->o, &b->frames, e) &&

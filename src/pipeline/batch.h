@@ -1,14 +1,16 @@
 // Many frames in one process: read ahead, filter, write behind.
 //
-// One GL context, its programs and the environment live for the whole batch. A reader thread, the GL thread (the caller's) and a
-// writer thread work on neighbouring frames; a fixed number of frames is in flight, and memory is bounded by it. The outputs do
-// not depend on that number, on timing or on the order of frames.
+// One GL context, its programs and the environment live for the whole batch. Three threads work on neighbouring frames: one reads
+// and prepares, the GL thread (the caller's) keeps the device busy, one converts the layers and writes; loops over pixels and
+// chunks are spread over more. A fixed number of frames is in flight, and memory is bounded by it: one for each thread and, where
+// layers travel through mapped buffers, one whose layers are under way. The outputs do not depend on that number, on timing or on
+// the order of frames.
 #ifndef SSDO_PIPELINE_BATCH_H
 #define SSDO_PIPELINE_BATCH_H
 
 #include "pipeline/frame.h"
 
-enum { BATCH_IN_FLIGHT = 3 };
+enum { BATCH_IN_FLIGHT = 3, BATCH_MOST_IN_FLIGHT = 4 };
 
 // True if the options ask for a sequence: a frame place in the input, or --frames.
 bool batch_is(const options *o);

@@ -3,11 +3,11 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/mem.h"
 #include "gbuffer/half.h"
 #include "pipeline/read_back.h"
+#include "pipeline/stopwatch.h"
 
 // The bounce that --bounce names, else the method's own.
 static bool (*bounce_of(const plan *p))(pass_context *, error *)
@@ -61,18 +61,22 @@ static void take_times(pass_context *c, const pass_context *small)
     c->planes = small->planes;
 }
 
-static bool run_half(pass_context *c, const plan *p, error *e)
+static bool halve(const job *j, frame_result *r, error *e)
 {
-    gbuffer gb, whole = *c->gb; // borrows its arrays
-    pass_context small;
+    gbuffer whole = r->gb; // borrows its arrays
+    if (r->uncovered) whole.coverage = NULL;
     // What the bounce gathers; nothing else at half size looks at colours.
-    if (!p->bounce) whole.albedo = NULL;
-    if (!p->bounce || c->set.relight) whole.beauty = NULL;
-    if (!gbuffer_halve(&whole, c->threads, &gb, e)) return false;
+    if (!r->plan.bounce) whole.albedo = NULL;
+    if (!r->plan.bounce || r->set.relight) whole.beauty = NULL;
+    return gbuffer_halve(&whole, j->threads, &r->half, e);
+}
+
+static bool run_half(pass_context *c, const gbuffer *half, const plan *p, error *e)
+{
+    pass_context small;
     pass_settings set = c->set;
     set.blur = (set.blur + 1) / 2; // as wide on the surface as at full size
-    bool ok = pass_begin(&small, c->g, &gb, c->env, &set, c->timing, c->log, e);
-    if (!ok) goto out;
+    if (!pass_begin(&small, c->g, half, c->env, &set, c->timing, c->log, e)) return false;
     small.tiles.stop = c->tiles.stop;
     small.environment = c->environment;
     small.sunless = c->sunless;
@@ -83,7 +87,7 @@ static bool run_half(pass_context *c, const plan *p, error *e)
     small.want_radiance = c->want_radiance;
     small.want_visibility = c->want_visibility;
     small.want_bent = c->want_bent;
-    ok = run_method(&small, p, e);
+    bool ok = run_method(&small, p, e);
     // All layers go up together, unless the bounce needs what is done to them at either size.
     bool early =
         p->bounce && c->set.relight && (p->look || p->irradiance || (c->proxies && c->proxies->count > 0) || small.suns_apart);
@@ -92,15 +96,12 @@ static bool run_half(pass_context *c, const plan *p, error *e)
     ok = ok && (early ? pass_upsample_indirect(c, &small, e) : pass_upsample(c, &small, e));
     take_times(c, &small);
     pass_end(&small);
-    ok = ok && pass_suns(c, e) && finish_light(c, p, e);
-out:
-    gbuffer_free(&gb);
-    return ok;
+    return ok && pass_suns(c, e) && finish_light(c, p, e);
 }
 
-static bool run_passes(pass_context *c, const plan *p, error *e)
+static bool run_passes(pass_context *c, const gbuffer *half, const plan *p, error *e)
 {
-    if (c->set.half ? !run_half(c, p, e)
+    if (c->set.half ? !run_half(c, half, p, e)
                     : !(run_method(c, p, e) && pass_suns(c, e) && finish_light(c, p, e) && run_bounce(c, p, e)))
         return false;
     // A beauty's light on unseen spheres is unknown: they send none.
@@ -109,22 +110,6 @@ static bool run_passes(pass_context *c, const plan *p, error *e)
     if (p->specular && !pass_specular(c, e)) return false;
     if (p->depthmask && !pass_depthmask(c, e)) return false;
     return !p->composite || pass_composite(c, e);
-}
-
-static double milliseconds(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
-
-// Without coverage the passes take a pixel for covered where it has a surface.
-static bool needs_coverage(const gbuffer *gb)
-{
-    size_t pixels = (size_t)gb->width * (size_t)gb->height;
-    for (size_t i = 0; gb->coverage && i < pixels; i++)
-        if (gb->coverage[i] != (gb->depth[i] > 0.0f ? 1.0f : 0.0f)) return true;
-    return false;
 }
 
 static void take_rounds(const job *j, frame_result *r, const pass_rounds *rounds)
@@ -139,14 +124,42 @@ static void take_rounds(const job *j, frame_result *r, const pass_rounds *rounds
                  r->tiles_above, rounds->tiles.occupied_count, r->set.error, rounds->most_samples);
 }
 
-bool filter_frame(job *j, frame_result *r, error *e)
+// Without coverage the passes take a pixel for covered where it has a surface.
+static bool needs_coverage(const gbuffer *gb)
+{
+    size_t pixels = (size_t)gb->width * (size_t)gb->height;
+    for (size_t i = 0; gb->coverage && i < pixels; i++)
+        if (gb->coverage[i] != (gb->depth[i] > 0.0f ? 1.0f : 0.0f)) return true;
+    return false;
+}
+
+bool filter_prepare(const job *j, frame_result *r, error *e)
+{
+    if (!r->prepared) r->uncovered = !needs_coverage(&r->gb);
+    r->prepared = true;
+    return !r->set.half || r->half.depth || halve(j, r, e);
+}
+
+static void take_counts(frame_result *r, const pass_context *c)
+{
+    memcpy(r->timings, c->timings, sizeof r->timings);
+    r->timing_count = c->timing_count;
+    memcpy(r->uploads, c->uploads, sizeof r->uploads);
+    r->upload_count = c->upload_count;
+    r->planes = c->planes;
+    r->tile_size = c->tiles.size, r->tiles = c->tiles.columns * c->tiles.rows, r->tiles_occupied = c->tiles.occupied_count;
+}
+
+bool filter_begin(job *j, frame_result *r, error *e)
 {
     pass_context c;
-    double wall = milliseconds(CLOCK_MONOTONIC), cpu = milliseconds(CLOCK_PROCESS_CPUTIME_ID);
+    if (!filter_prepare(j, r, e)) return false;
+    stopwatch t = stopwatch_start();
     const gpu_counts before = j->g.counts;
+    const double wall = r->wall_ms[STAGE_CONVERT], cpu = r->cpu_ms[STAGE_CONVERT];
     const environment *env = j->env_loaded ? &j->env : NULL;
     gbuffer gb = r->gb; // borrows its arrays
-    if (!needs_coverage(&gb)) gb.coverage = NULL;
+    if (r->uncovered) gb.coverage = NULL;
     if (!pass_begin(&c, &j->g, &gb, env, &r->set, j->o->report != NULL, j->log, e)) return false;
     c.environment = j->env_image;
     c.sunless = &j->sunless;
@@ -161,20 +174,19 @@ bool filter_frame(job *j, frame_result *r, error *e)
     for (int k = 0; k < SH_IMAGES; k++) c.stored_sh[k] = r->stored_sh[k];
     c.tiles.stop = j->stop;
     c.want_diffuse = r->plan.layers & 1u << LAYER_DIFFUSE;
-    bool ok = run_passes(&c, &r->plan, e) && gpu_finish(&j->g, "the passes", e);
-    r->wall_ms[STAGE_PASSES] = milliseconds(CLOCK_MONOTONIC) - wall;
-    r->cpu_ms[STAGE_PASSES] = milliseconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
-    ok = ok && !job_stopped(j) && read_back(j, &c, r, e) && gpu_finish(&j->g, "the read-back", e);
-    r->wall_ms[STAGE_READ_BACK] = milliseconds(CLOCK_MONOTONIC) - wall - r->wall_ms[STAGE_PASSES];
-    r->cpu_ms[STAGE_READ_BACK] = milliseconds(CLOCK_PROCESS_CPUTIME_ID) - cpu - r->cpu_ms[STAGE_PASSES];
-    memcpy(r->timings, c.timings, sizeof r->timings);
-    r->timing_count = c.timing_count;
-    memcpy(r->uploads, c.uploads, sizeof r->uploads);
-    r->upload_count = c.upload_count;
-    r->planes = c.planes;
+    bool ok = run_passes(&c, &r->half, &r->plan, e) && gpu_finish(&j->g, "the passes", e);
+    stopwatch_add(&t, &r->wall_ms[STAGE_PASSES], &r->cpu_ms[STAGE_PASSES]);
+    ok = ok && !job_stopped(j) && read_back_begin(j, &c, r, e);
+    stopwatch_add(&t, &r->wall_ms[STAGE_READ_BACK], &r->cpu_ms[STAGE_READ_BACK]);
+    // What was converted meanwhile has its own time.
+    r->wall_ms[STAGE_READ_BACK] -= r->wall_ms[STAGE_CONVERT] - wall;
+    r->cpu_ms[STAGE_READ_BACK] -= r->cpu_ms[STAGE_CONVERT] - cpu;
     if (ok) take_rounds(j, r, &c.rounds);
-    r->tile_size = c.tiles.size, r->tiles = c.tiles.columns * c.tiles.rows, r->tiles_occupied = c.tiles.occupied_count;
+    take_counts(r, &c);
     r->gl = gpu_counts_since(&j->g, &before);
     pass_end(&c);
+    gbuffer_free(&r->half);
     return ok;
 }
+
+bool filter_frame(job *j, frame_result *r, error *e) { return filter_begin(j, r, e) && read_back_finish(j, r, e); }

@@ -1,9 +1,14 @@
-// The GPU part of a frame: upload, the planned passes in order, read back into result->layers.
+// The GPU part of a frame: upload, the planned passes in order, the layers back (read_back.h).
 #ifndef SSDO_PIPELINE_FILTER_H
 #define SSDO_PIPELINE_FILTER_H
 
 #include "pipeline/frame.h"
 
+// What the CPU does for the passes, from result->gb, set and plan. On any thread, but on no result twice at a time.
+bool filter_prepare(const job *j, frame_result *result, error *e);
+// The passes, after filter_prepare if nobody called it. The layers are on their way: read_back_wait and read_back_convert follow.
+bool filter_begin(job *j, frame_result *result, error *e);
+// All of it.
 bool filter_frame(job *j, frame_result *result, error *e);
 
 #endif

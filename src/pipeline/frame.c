@@ -4,7 +4,6 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "base/mem.h"
@@ -15,29 +14,14 @@
 #include "gbuffer/depth_code.h"
 #include "pipeline/filter.h"
 #include "pipeline/output.h"
+#include "pipeline/read_back.h"
+#include "pipeline/settings.h"
+#include "pipeline/stopwatch.h"
 #include "pipeline/stored.h"
 #include "pipeline/views.h"
 #include "plugin/colour.h"
 
-typedef struct stopwatch {
-    double wall, cpu;
-} stopwatch;
-
-static stopwatch read_clocks(void)
-{
-    struct timespec w, c;
-    clock_gettime(CLOCK_MONOTONIC, &w);
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &c);
-    return (stopwatch){(double)w.tv_sec * 1e3 + (double)w.tv_nsec * 1e-6, (double)c.tv_sec * 1e3 + (double)c.tv_nsec * 1e-6};
-}
-
-static void lap(frame_result *r, stage s, stopwatch *since)
-{
-    stopwatch t = read_clocks();
-    r->wall_ms[s] += t.wall - since->wall;
-    r->cpu_ms[s] += t.cpu - since->cpu;
-    *since = t;
-}
+static void lap(frame_result *r, stage s, stopwatch *since) { stopwatch_add(since, &r->wall_ms[s], &r->cpu_ms[s]); }
 
 void job_init(job *j, const options *o, log_t *log)
 {
@@ -45,12 +29,19 @@ void job_init(job *j, const options *o, log_t *log)
     gpu_set_up();
 }
 
+static bool open_device(job *j, error *e)
+{
+    if (!gpu_open(&j->g, j->o->device, j->log, e)) return false;
+    j->g.threads = j->threads;
+    return true;
+}
+
 bool job_open(job *j, const options *o, log_t *log, error *e)
 {
     job_init(j, o, log);
     if (!colour_config(o->ocio))
         log_info(log, "colour: no OpenColorIO config, so beauty, albedo and environment count as linear");
-    return gpu_open(&j->g, o->device, log, e);
+    return open_device(j, e);
 }
 
 bool job_stopped(const job *j) { return j->stop && *j->stop; }
@@ -191,7 +182,7 @@ static bool fits_device(const job *j, const frame_result *r, error *e)
 static bool begin_reading(const job *j, const char *const *inputs, int count, frame_result *r, error *e)
 {
     *r = (frame_result){0};
-    stopwatch t = read_clocks();
+    stopwatch t = stopwatch_start();
     bool ok = exr_file_open_all(inputs, count, &r->file, e) && list_views(j, r, e);
     for (frame_result *v = r; ok && v; v = v->next_view) ok = resolve_view(j, v, e);
     lap(r, STAGE_READ, &t);
@@ -200,7 +191,7 @@ static bool begin_reading(const job *j, const char *const *inputs, int count, fr
 
 static bool finish_reading(const job *j, frame_result *r, error *e)
 {
-    stopwatch t = read_clocks();
+    stopwatch t = stopwatch_start();
     bool ok = exr_file_load(r->file, j->threads, e);
     lap(r, STAGE_READ, &t);
     for (frame_result *v = r; ok && v; v = v->next_view) ok = build_view(j, v, e);
@@ -235,7 +226,7 @@ static bool read_and_open(job *j, const char *const *inputs, int count, frame_re
     pthread_t thread;
     if (!begin_reading(j, inputs, count, r, e)) return false;
     bool beside = larger_side(r) <= SURE && pthread_create(&thread, NULL, read_beside, &d) == 0;
-    bool opened = gpu_open(&j->g, j->o->device, j->log, e);
+    bool opened = open_device(j, e);
     if (beside) pthread_join(thread, NULL);
     if (opened && !beside) return fits_device(j, r, e) && finish_reading(j, r, e);
     if (opened && !d.ok) *e = d.e;
@@ -253,15 +244,13 @@ static void describe(const job *j, const frame_result *r)
                  r->plan.steps[i].why);
 }
 
-static bool env_up_z(const job *j, const frame_result *r) { return j->o->env_up ? j->o->env_up == 'z' : r->resolution.up_is_z; }
-
 // The environment is prepared with the first frame, because its default up axis is the renderer's.
 static bool prepare_light(job *j, const frame_result *r, error *e)
 {
     double primaries[8];
     if (!r->plan.light || j->env_loaded) return true;
     env_options eo = {.path = j->o->env,
-                      .up_z = env_up_z(j, r),
+                      .up_z = settings_up_z(j, r),
                       .rotate_degrees = j->o->env_rotate,
                       .scale = j->o->env_scale,
                       .threads = j->threads,
@@ -283,96 +272,6 @@ static bool check_world(const job *j, const frame_result *r, error *e)
                    "FILE or, if the normals are in world space, --normal-space world");
 }
 
-static double radius_of(const job *j, const gbuffer *gb)
-{
-    const options *o = j->o;
-    if (o->radius_unit == RADIUS_WORLD) return o->radius;
-    if (o->radius_unit == RADIUS_AUTO) return j->shot_radius > 0.0 ? j->shot_radius : gbuffer_auto_radius(gb);
-    // Pixels are turned into one world distance at the frame's median depth, so that the radius is the same on all surfaces.
-    double per_unit = gb->camera.fx;
-    return gb->camera.kind == CAMERA_ORTHOGRAPHIC ? o->radius / per_unit : o->radius * frame_median_depth(gb) / per_unit;
-}
-
-static int by_value(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
-// Of at most a few thousand evenly spaced surfaces: enough for a scale.
-double frame_median_depth(const gbuffer *gb)
-{
-    enum { MOST = 4096 };
-    float depths[MOST];
-    int n = 0;
-    size_t count = (size_t)gb->width * (size_t)gb->height, stride = gb->valid / MOST + 1, seen = 0;
-    for (size_t i = 0; i < count && n < MOST; i++)
-        if (gb->depth[i] > 0.0f && seen++ % stride == 0) depths[n++] = gb->depth[i];
-    if (n == 0) return 1.0;
-    qsort(depths, (size_t)n, sizeof *depths, by_value);
-    return depths[n / 2];
-}
-
-// The world the environment is fixed to: the scene's, or one that moves with the camera, its up axis up in the picture and the
-// camera looking along +y (z up) or -z (y up).
-static mat3 world_from_camera(const job *j, const frame_result *r)
-{
-    static const mat3 up_z = {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}}, up_y = {{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
-    if (strcmp(j->o->env_frame, "camera") == 0) return env_up_z(j, r) ? up_z : up_y;
-    return r->gb.camera.has_rotation ? r->gb.camera.world_from_camera : m3_identity();
-}
-
-// composite.comp: 1 the beauty, 2 the environment, 0 nothing.
-static int background_of(bool beauty, bool sky) { return beauty ? 1 : sky ? 2 : 0; }
-
-// A quarter of the method's own samples for a draft (and of the pixels, settings_of), four times as many for high quality.
-static int samples_at(const method *m, int quality)
-{
-    return quality < 0 ? m->samples / 4 : quality > 0 ? m->samples * 4 : m->samples;
-}
-
-static pass_settings settings_of(const job *j, const frame_result *r, double radius)
-{
-    const options *o = j->o;
-    const method *m = r->plan.method;
-    double share = o->thickness < 0.0 ? m->thickness : o->thickness;
-    bool beauty = r->resolution.components[ROLE_BEAUTY] > 0, alpha = r->resolution.components[ROLE_ALPHA] > 0;
-    return (pass_settings){
-        .radius = radius,
-        .thickness = share * radius,
-        .thickness_fixed = o->thickness >= 0.0,
-        .planes = !o->no_planes,
-        .half =
-            (o->half < 0 ? o->quality < 0 : o->half) && !r->plan.from_sh && o->error <= 0.0, // stored layers are whole already
-        .samples = o->samples > 0 && o->error <= 0.0 ? o->samples : samples_at(m, o->error > 0.0 ? 0 : o->quality),
-        .error = o->error,
-        .most_samples = o->samples > 0 ? o->samples : ROUNDS_MOST_SAMPLES,
-        .angle_bias = o->angle_bias,
-        .sh_bands = o->sh_bands,
-        .sh_sigma = o->sh_sigma,
-        .blur = o->blur < 0 ? m->blur : o->blur,
-        .scale = o->scale,
-        .contrast = o->contrast,
-        .env_level = o->env_lod,
-        .bounce_strength = o->bounce_strength,
-        .vpl_count = o->vpl_count,
-        .world_from_camera = world_from_camera(j, r),
-        .mesh = o->mesh,
-        .trace = o->trace,
-        .mesh_axes = o->mesh_axes,
-        .amount = o->amount,
-        .depthmask_strength = o->depthmask_strength,
-        .multiply_all = strcmp(o->multiply, "all") == 0,
-        .visibility_mode = r->plan.visibility_mode,
-        .base_albedo = r->resolution.albedo == ALBEDO_BASE,
-        .averaged_albedo = convention_named(r->resolution.convention)->normals_averaged,
-        // With an alpha the picture is premultiplied, and the environment is not part of it.
-        .background = background_of(beauty, o->env && !alpha),
-        .relight = r->plan.relight,
-        .bounce_in_composite = r->plan.bounce_in_composite,
-    };
-}
-
 // The frame's own spheres. Only a world camera can place them.
 static bool load_proxies(const job *j, frame_result *r, error *e)
 {
@@ -387,27 +286,68 @@ static bool load_proxies(const job *j, frame_result *r, error *e)
     return proxies_load(many ? path : j->o->proxies, &r->proxies, e);
 }
 
-static bool filter_view(job *j, frame_result *r, double radius, error *e)
+static bool prepare_view(const job *j, frame_result *r, double radius, error *e)
 {
     if (r->gb.valid == 0) log_warn(j->log, "empty", "%s: no pixel has a surface; the layers are neutral", r->file->path);
     r->set = settings_of(j, r, radius);
     describe(j, r);
-    return check_world(j, r, e) && load_proxies(j, r, e) && prepare_light(j, r, e) && filter_frame(j, r, e);
+    return check_world(j, r, e) && load_proxies(j, r, e) && filter_prepare(j, r, e);
+}
+
+bool frame_prepare(const job *j, frame_result *r, error *e)
+{
+    stopwatch t = stopwatch_start();
+    double radius = settings_radius(j, &r->gb);
+    bool ok = true;
+    for (frame_result *v = r; ok && v; v = v->next_view) {
+        v->frame = r->frame;
+        ok = prepare_view(j, v, radius, e);
+    }
+    lap(r, STAGE_RESOLVE, &t);
+    return ok;
+}
+
+bool frame_begin(job *j, frame_result *r, error *e)
+{
+    for (frame_result *v = r; v; v = v->next_view)
+        if (!prepare_light(j, v, e) || !filter_begin(j, v, e)) return false;
+    return true;
+}
+
+bool frame_is_under_way(const frame_result *r)
+{
+    for (; r; r = r->next_view)
+        if (r->band_count > 0) return true;
+    return false;
+}
+
+bool frame_wait(job *j, frame_result *r, error *e)
+{
+    stopwatch t = stopwatch_start();
+    for (frame_result *v = r; v; v = v->next_view)
+        if (!read_back_wait(j, v, e)) return false;
+    lap(r, STAGE_READ_BACK, &t);
+    return true;
+}
+
+bool frame_convert(const job *j, frame_result *r, error *e)
+{
+    for (frame_result *v = r; v; v = v->next_view)
+        if (!read_back_convert(j, v, e)) return false;
+    return true;
 }
 
 bool frame_filter(job *j, frame_result *r, error *e)
 {
-    double radius = radius_of(j, &r->gb);
-    for (frame_result *v = r; v; v = v->next_view) {
-        v->frame = r->frame;
-        if (!filter_view(j, v, radius, e)) return false;
-    }
+    if (!frame_prepare(j, r, e)) return false;
+    for (frame_result *v = r; v; v = v->next_view)
+        if (!prepare_light(j, v, e) || !filter_frame(j, v, e)) return false;
     return true;
 }
 
 bool frame_write(const job *j, frame_result *r, const char *output, error *e)
 {
-    stopwatch t = read_clocks();
+    stopwatch t = stopwatch_start();
     if (!output_write(j, r, output, e)) return false;
     lap(r, STAGE_WRITE, &t);
     if (r->clamped)
@@ -449,6 +389,8 @@ static void free_view(frame_result *r)
         free(r->layers[i]);
         for (int k = 0; k < LAYER_CHANNELS; k++) free(r->samples[i][k]);
     }
+    read_back_drop(r);
+    gbuffer_free(&r->half);
     for (int k = 0; k < SH_IMAGES; k++) free(r->stored_sh[k]);
     proxies_free(&r->proxies);
     gbuffer_free(&r->gb);

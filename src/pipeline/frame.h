@@ -31,7 +31,7 @@ typedef struct job {
     double shot_radius;       // automatic radius of the whole sequence; 0: each frame has its own
 } job;
 
-typedef enum stage { STAGE_READ, STAGE_RESOLVE, STAGE_PASSES, STAGE_READ_BACK, STAGE_WRITE, STAGE_COUNT } stage;
+typedef enum stage { STAGE_READ, STAGE_RESOLVE, STAGE_PASSES, STAGE_READ_BACK, STAGE_CONVERT, STAGE_WRITE, STAGE_COUNT } stage;
 
 // What one frame did, for -v and --report. A stereo file has one for each view, in a list; each view has its own camera, and all
 // have the first one's radius.
@@ -59,7 +59,12 @@ typedef struct frame_result {
     void *samples[LAYER_COUNT][LAYER_CHANNELS];
     sample_type types[LAYER_COUNT];
     float *layers[LAYER_COUNT];
+    struct layer_band *bands; // of the layers, on their way from the device (read_back.h); owned
+    int band_count;
     float *stored_sh[SH_IMAGES]; // --from-sh: what the input brought along, else NULL
+    bool prepared;               // by filter_prepare
+    bool uncovered;              // the coverage says nothing that the depth does not
+    gbuffer half;                // set.half: the frame at half its size, until the passes have run
     bool second_part;
     const char *view;               // the stereo view this is, the file's string; NULL without views
     struct frame_result *next_view; // owned; shares the file
@@ -81,6 +86,17 @@ bool frame_read(const job *j, const char *input, frame_result *result, error *e)
 // The same for a frame whose passes are in several files.
 bool frame_read_files(const job *j, const char *const *inputs, int count, frame_result *result, error *e);
 bool frame_filter(job *j, frame_result *result, error *e);
+
+// Filtering in four steps, for who does other frames beside it. frame_prepare may follow reading on its thread, once
+// result->frame is set; frame_begin and frame_wait belong to the context's thread, and between them another frame may begin;
+// frame_convert may precede writing on its thread.
+bool frame_prepare(const job *j, frame_result *result, error *e);
+bool frame_begin(job *j, frame_result *result, error *e); // the passes; the layers are on their way
+bool frame_wait(job *j, frame_result *result, error *e);  // they have arrived
+bool frame_convert(const job *j, frame_result *result, error *e);
+// Whether there is anything for frame_wait to wait for.
+bool frame_is_under_way(const frame_result *result);
+
 bool frame_write(const job *j, frame_result *result, const char *output, error *e);
 
 // All three.

@@ -1,13 +1,35 @@
 #include "pipeline/read_back.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/threads.h"
 #include "exr/write.h"
+#include "gpu/transfer.h"
+#include "pipeline/stopwatch.h"
 
-enum { BAND = 1 << 17 }; // floats read at a time: what follows finds them in the cache
+enum {
+    PIECE = 1 << 16, // floats that one thread converts at a time: they stay in its cache
+    GROUP = 4,       // pieces for each thread that are fetched together, where nothing is mapped
+};
+
+// Rows of a layer as the device holds them, in one image or, for sh_3, in two.
+struct layer_band {
+    layer_id layer;
+    int y, rows;
+    size_t stored; // floats a pixel in each image
+    const float *v[2];
+    gpu_transfer down[2];
+};
+typedef struct layer_band band;
+
+static size_t channels_of(layer_id l) { return strlen(layer_table[l].channels); }
+static int images_of(layer_id l) { return channels_of(l) > 4 ? 2 : 1; }
+
+// ---- conversion
 
 // A layer never holds NaN or infinity, whatever happened before; occlusion stays in 0..1 and light is not negative.
 static inline float sane(float v, bool share, bool light)
@@ -17,62 +39,31 @@ static inline float sane(float v, bool share, bool light)
     return light && v < 0.0f ? 0.0f : v;
 }
 
-// Leaves the first `channels` of every `stored` components, in place.
-static void sanitise(layer_id l, float *v, size_t pixels, size_t stored, size_t channels)
+// One channel of every `stride` floats.
+static void sanitise(layer_id l, const float *v, size_t stride, size_t pixels, float *to)
 {
     bool share = l == LAYER_OCCLUSION || l == LAYER_VISIBILITY,
          light = l == LAYER_RADIANCE || l == LAYER_INDIRECT || l == LAYER_SPECULAR || l == LAYER_ERROR;
-    float *to = v;
-    for (size_t i = 0; i < pixels; i++, v += stored)
-        for (size_t k = 0; k < channels; k++) *to++ = sane(v[k], share, light);
+    for (size_t i = 0; i < pixels; i++) to[i] = sane(v[i * stride], share, light);
 }
 
 // Bent normals: unit length, in the space of the file's normals. Where nothing is open the normal stands in.
 static void point_along(const gbuffer *gb, size_t first, float *v, size_t pixels)
 {
+    float *x = v, *y = v + pixels, *z = y + pixels;
     for (size_t i = 0; i < pixels; i++) {
-        float *w = v + 3 * i;
         const float *n = gb->normal + 4 * (first + i);
-        vec3 d = v3((double)w[0], (double)w[1], (double)w[2]);
+        vec3 d = v3((double)x[i], (double)y[i], (double)z[i]);
         if (v3_length(d) < 1e-4) d = v3((double)n[0], (double)n[1], (double)n[2]);
         d = v3_normalize(m3_apply(gb->normal_from_camera, d));
-        w[0] = (float)d.x, w[1] = (float)d.y, w[2] = (float)d.z;
+        x[i] = (float)d.x, y[i] = (float)d.y, z[i] = (float)d.z;
     }
 }
 
-// Some rows of a layer; `joined` is the room where the seven coefficients of sh_3, which lie in two images, come together.
-typedef struct band {
-    int y, rows;
-    size_t first, pixels;
-    float *v, *joined;
-} band;
-
-static size_t components(const gpu_image *image) { return image->format == GL_R32F ? 1 : 4; }
-
-// Leaves the layer's own channels, interleaved, in *v.
-static void fetch(gpu *g, const gpu_image *image, layer_id l, const gbuffer *gb, const band *b, float **v)
+static size_t put(const float *v, size_t n, sample_type type, void *to, size_t first)
 {
-    size_t stored = components(image), channels = strlen(layer_table[l].channels);
-    gpu_image_download_rows(g, image, b->y, b->rows, b->v);
-    *v = b->v;
-    if (l == LAYER_SH_3) {
-        float *second = b->v + 4 * b->pixels;
-        gpu_image_download_rows(g, image + 1, b->y, b->rows, second);
-        for (size_t i = 0; i < b->pixels; i++) {
-            memcpy(b->joined + 8 * i, b->v + 4 * i, 4 * sizeof *second);
-            memcpy(b->joined + 8 * i + 4, second + 4 * i, 4 * sizeof *second);
-        }
-        *v = b->joined;
-        stored = 8;
-    }
-    sanitise(l, *v, b->pixels, stored, channels);
-    if (l == LAYER_BENT) point_along(gb, b->first, *v, b->pixels);
-}
-
-static size_t put(const float *v, size_t stride, size_t n, sample_type type, void *to, size_t first)
-{
-    if (type == SAMPLE_HALF) return exr_to_half(v, stride, n, (uint16_t *)to + first);
-    for (size_t i = 0; i < n; i++) ((float *)to)[first + i] = v[i * stride];
+    if (type == SAMPLE_HALF) return exr_to_half(v, 1, n, (uint16_t *)to + first);
+    memcpy((float *)to + first, v, n * sizeof *v);
     return 0;
 }
 
@@ -88,35 +79,125 @@ static sample_type type_of(const job *j, const frame_result *r, layer_id l)
 
 static bool make_room(const job *j, layer_id l, frame_result *r, error *e)
 {
-    size_t pixels = (size_t)r->gb.width * (size_t)r->gb.height, channels = strlen(layer_table[l].channels);
+    size_t pixels = (size_t)r->gb.width * (size_t)r->gb.height, channels = channels_of(l);
     r->types[l] = type_of(j, r, l);
     for (size_t k = 0; k < channels; k++)
         if (!r->samples[l][k] && !(r->samples[l][k] = mem_pixels(pixels, sample_size(r->types[l]), e))) return false;
-    return j->no_floats || (r->layers[l] = mem_pixels(pixels * channels, sizeof(float), e));
+    return j->no_floats || r->layers[l] || (r->layers[l] = mem_pixels(pixels * channels, sizeof(float), e));
 }
 
-static bool read_layer(const job *j, gpu *g, const gpu_image *image, layer_id l, frame_result *r, error *e)
+typedef struct conversion {
+    frame_result *r;
+    const band *b;
+    int rows;       // of a piece
+    float *scratch; // a piece's channels, one after the other, for each thread
+    atomic_size_t clamped;
+} conversion;
+
+static size_t scratch_size(const conversion *c) { return channels_of(c->b->layer) * (size_t)c->rows * (size_t)c->r->gb.width; }
+
+static bool convert_piece(void *context, size_t item, int worker)
 {
-    size_t width = (size_t)r->gb.width, channels = strlen(layer_table[l].channels);
-    int most = (int)(BAND / (8 * width)) + 1;
-    band b = {.v = mem_pixels(8 * width * (size_t)most, sizeof(float), e)};
-    bool ok = b.v && make_room(j, l, r, e);
-    if (ok && l == LAYER_SH_3) ok = (b.joined = mem_pixels(8 * width * (size_t)most, sizeof(float), e)) != NULL;
-    for (; ok && b.y < r->gb.height; b.y += b.rows) {
-        float *v;
-        b.rows = r->gb.height - b.y < most ? r->gb.height - b.y : most;
-        b.first = (size_t)b.y * width, b.pixels = (size_t)b.rows * width;
-        fetch(g, image, l, &r->gb, &b, &v);
-        if (r->layers[l]) memcpy(r->layers[l] + channels * b.first, v, channels * b.pixels * sizeof *v);
-        for (size_t k = 0; k < channels; k++)
-            r->clamped += put(v + k, channels, b.pixels, r->types[l], r->samples[l][k], b.first);
+    conversion *c = context;
+    const band *b = c->b;
+    frame_result *r = c->r;
+    layer_id l = b->layer;
+    int y = (int)item * c->rows, rows = b->rows - y < c->rows ? b->rows - y : c->rows;
+    size_t width = (size_t)r->gb.width, pixels = (size_t)rows * width, from = (size_t)y * width,
+           first = from + (size_t)b->y * width;
+    size_t channels = channels_of(l), clamped = 0;
+    float *v = c->scratch + (size_t)worker * scratch_size(c);
+    for (size_t k = 0; k < channels; k++) sanitise(l, b->v[k / 4] + from * b->stored + k % 4, b->stored, pixels, v + k * pixels);
+    if (l == LAYER_BENT) point_along(&r->gb, first, v, pixels);
+    for (size_t k = 0; k < channels; k++) {
+        float *floats = r->layers[l] ? r->layers[l] + channels * first + k : NULL;
+        for (size_t i = 0; floats && i < pixels; i++) floats[i * channels] = v[k * pixels + i];
+        clamped += put(v + k * pixels, pixels, r->types[l], r->samples[l][k], first);
     }
-    free(b.v);
-    free(b.joined);
+    atomic_fetch_add(&c->clamped, clamped);
+    return true;
+}
+
+static int piece_rows(const frame_result *r, size_t stored)
+{
+    size_t rows = PIECE / (stored * (size_t)r->gb.width);
+    return rows > 1 ? (int)rows : 1;
+}
+
+static bool convert_band(const job *j, frame_result *r, const band *b, error *e)
+{
+    stopwatch t = stopwatch_start();
+    conversion c = {.r = r, .b = b, .rows = piece_rows(r, b->stored)};
+    size_t pieces = (size_t)(b->rows + c.rows - 1) / (size_t)c.rows;
+    size_t threads = pieces < (size_t)j->threads ? pieces : (size_t)j->threads;
+    if (!make_room(j, b->layer, r, e) || !(c.scratch = mem_pixels(threads * scratch_size(&c), sizeof(float), e))) return false;
+    threads_for((int)threads, pieces, convert_piece, &c);
+    free(c.scratch);
+    r->clamped += c.clamped;
+    stopwatch_add(&t, &r->wall_ms[STAGE_CONVERT], &r->cpu_ms[STAGE_CONVERT]);
+    return true;
+}
+
+// ---- fetching
+
+static size_t components(const gpu_image *image) { return image->format == GL_R32F ? 1 : 4; }
+
+// Rows at a time through memory of ours, converted while they are in the cache.
+static bool fetch_directly(const job *j, gpu *g, const gpu_image *image, layer_id l, frame_result *r, error *e)
+{
+    band b = {.layer = l, .stored = components(image)};
+    int images = images_of(l), most = piece_rows(r, b.stored) * GROUP * j->threads;
+    if (most > r->gb.height) most = r->gb.height;
+    size_t size = b.stored * (size_t)r->gb.width * (size_t)most;
+    float *v = mem_pixels((size_t)images * size, sizeof *v, e);
+    bool ok = v != NULL;
+    for (; ok && b.y < r->gb.height; b.y += b.rows) {
+        b.rows = r->gb.height - b.y < most ? r->gb.height - b.y : most;
+        for (int i = 0; i < images; i++) {
+            gpu_image_download_rows(g, image + i, b.y, b.rows, v + (size_t)i * size);
+            b.v[i] = v + (size_t)i * size;
+        }
+        ok = convert_band(j, r, &b, e);
+    }
+    free(v);
     return ok;
 }
 
-bool read_back(const job *j, const pass_context *c, frame_result *r, error *e)
+static bool start_band(gpu *g, const gpu_image *image, layer_id l, int y, int rows, frame_result *r)
+{
+    error none = {0};
+    band *grown = mem_grow(r->bands, (size_t)r->band_count + 1, sizeof *grown, &none);
+    if (!grown) return false;
+    r->bands = grown;
+    band *b = &r->bands[r->band_count++];
+    *b = (band){.layer = l, .y = y, .rows = rows, .stored = components(image)};
+    for (int i = 0; i < images_of(l); i++) {
+        if (!gpu_transfer_start(g, image + i, y, rows, &b->down[i], &none)) return false;
+        b->v[i] = b->down[i].pixels;
+    }
+    return true;
+}
+
+static void drop_bands(frame_result *r, int keep)
+{
+    for (; r->band_count > keep; r->band_count--)
+        for (int i = 0; i < 2; i++) gpu_transfer_end(&r->bands[r->band_count - 1].down[i]);
+}
+
+// False if there is no room for the buffers; then nothing of the layer is under way.
+static bool start_layer(gpu *g, const gpu_image *image, layer_id l, frame_result *r)
+{
+    int before = r->band_count, most = gpu_transfer_rows(g, image);
+    for (int y = 0, rows; y < r->gb.height; y += rows) {
+        rows = r->gb.height - y < most ? r->gb.height - y : most;
+        if (start_band(g, image, l, y, rows, r)) continue;
+        drop_bands(r, before);
+        return false;
+    }
+    return true;
+}
+
+bool read_back_begin(job *j, const pass_context *c, frame_result *r, error *e)
 {
     const gpu_image *images[LAYER_COUNT] = {
         [LAYER_OCCLUSION] = &c->occlusion,
@@ -134,7 +215,42 @@ bool read_back(const job *j, const pass_context *c, frame_result *r, error *e)
         [LAYER_SH_3] = &c->sh[3],
         [LAYER_ERROR] = &c->error,
     };
-    for (int i = 0; i < LAYER_COUNT; i++)
-        if (r->plan.layers & 1u << i && !read_layer(j, c->g, images[i], (layer_id)i, r, e)) return false;
+    for (int i = 0; i < LAYER_COUNT; i++) {
+        layer_id l = (layer_id)i;
+        if (!(r->plan.layers & 1u << l) || (j->g.mapped && start_layer(&j->g, images[l], l, r))) continue;
+        if (!fetch_directly(j, &j->g, images[l], l, r, e)) return false;
+    }
+    return gpu_check(&j->g, "the read-back", e);
+}
+
+bool read_back_wait(job *j, const frame_result *r, error *e)
+{
+    for (int i = 0; i < 2 * r->band_count; i++)
+        if (!gpu_transfer_wait(&j->g, &r->bands[i / 2].down[i % 2], e)) return false;
     return true;
+}
+
+static bool convert_all(const job *j, gpu *waiting, frame_result *r, error *e)
+{
+    bool ok = true;
+    for (int i = 0; ok && i < r->band_count; i++) {
+        band *b = &r->bands[i];
+        stopwatch t = stopwatch_start();
+        for (int k = 0; ok && waiting && k < 2; k++) ok = gpu_transfer_wait(waiting, &b->down[k], e);
+        if (waiting) stopwatch_add(&t, &r->wall_ms[STAGE_READ_BACK], &r->cpu_ms[STAGE_READ_BACK]);
+        ok = ok && convert_band(j, r, b, e);
+        for (int k = 0; k < 2; k++) gpu_transfer_end(&b->down[k]);
+    }
+    read_back_drop(r);
+    return ok;
+}
+
+bool read_back_convert(const job *j, frame_result *r, error *e) { return convert_all(j, NULL, r, e); }
+bool read_back_finish(job *j, frame_result *r, error *e) { return convert_all(j, &j->g, r, e); }
+
+void read_back_drop(frame_result *r)
+{
+    drop_bands(r, 0);
+    free(r->bands);
+    r->bands = NULL;
 }

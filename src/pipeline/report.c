@@ -6,7 +6,7 @@
 
 #include "pipeline/json.h"
 
-const char *const report_stage_names[STAGE_COUNT] = {"read", "resolve", "passes", "read back", "write"};
+const char *const report_stage_names[STAGE_COUNT] = {"read", "resolve", "passes", "read back", "convert", "write"};
 
 static json_object *channels_of(const frame_result *r)
 {

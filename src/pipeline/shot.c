@@ -3,7 +3,7 @@
 #include "pipeline/json.h"
 #include "pipeline/report.h"
 
-void shot_begin(shot_report *s) { *s = (shot_report){.frames = json_object_new_array()}; }
+void shot_begin(shot_report *s) { *s = (shot_report){.frames = json_object_new_array(), .since = stopwatch_start()}; }
 
 void shot_free(shot_report *s)
 {
@@ -48,6 +48,20 @@ void shot_add(shot_report *s, const shot_frame *f)
     json_object_array_add(s->frames, o);
 }
 
+// What bounds the sequence: the thread that is busy nearly all the time, or, where `cores` is near the machine's, the CPU.
+static json_object *busy_of(const shot_report *s)
+{
+    static const char *const names[SHOT_THREADS] = {"read", "gpu", "write"};
+    double wall = 0.0, cpu = 0.0;
+    stopwatch t = s->since;
+    stopwatch_add(&t, &wall, &cpu);
+    json_object *o = json_object_new_object();
+    for (int i = 0; i < SHOT_THREADS; i++) json_put_number(o, names[i], wall > 0.0 ? s->busy_ms[i] / wall : 0.0);
+    json_put_number(o, "cores", wall > 0.0 ? cpu / wall : 0.0);
+    json_put_number(o, "wall_ms", wall);
+    return o;
+}
+
 bool shot_write(shot_report *s, const job *j, const frame_list *failures, const char *path, error *e)
 {
     json_object *o = json_object_new_object(), *times = json_object_new_array(), *warnings = json_object_new_array();
@@ -66,6 +80,7 @@ bool shot_write(shot_report *s, const job *j, const frame_list *failures, const 
     for (int i = 0; i < STAGE_COUNT; i++)
         json_object_array_add(times, json_time(report_stage_names[i], s->wall_ms[i], s->cpu_ms[i]));
     json_put(o, "times", times);
+    json_put(o, "busy", busy_of(s));
     json_put(o, "clamped_samples", json_object_new_int64((int64_t)s->clamped));
     for (int i = 0; i < j->log->warning_count; i++) json_object_array_add(warnings, json_text(j->log->warnings[i]));
     json_put(o, "warnings", warnings);

@@ -294,7 +294,7 @@ static void marches_are_those_needed(void **state)
 
 static void the_rest_is_there(void **state)
 {
-    static const char *stages[] = {"read", "resolve", "passes", "upload", "ssdo", "blur", "read back", "write"};
+    static const char *stages[] = {"read", "resolve", "passes", "upload", "ssdo", "blur", "read back", "convert", "write"};
     (void)state;
     json_object *r = report_of_scene((scene_exr_options){0}, NULL, SKY);
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
