@@ -21,14 +21,20 @@ int gpu_tile_size(const gpu *g, int samples)
     return g->software ? GPU_TILE : hardware_size(samples);
 }
 
-static bool any(const unsigned char *row, int n)
+// What says where surfaces are: bytes, or floats.
+typedef struct surfaces {
+    const unsigned char *bytes;
+    const float *mask, *coverage;
+} surfaces;
+
+static bool any(const surfaces *s, size_t first, int n)
 {
-    for (int i = 0; i < n; i++)
-        if (row[i]) return true;
+    for (size_t i = first; i < first + (size_t)n; i++)
+        if (s->bytes ? s->bytes[i] != 0 : s->mask[i] != 0.0f || (s->coverage && s->coverage[i] > 0.0f)) return true;
     return false;
 }
 
-bool gpu_tiles_of(gpu_tiles *t, int width, int height, int size, const unsigned char *mask, error *e)
+static bool make(gpu_tiles *t, int width, int height, int size, const surfaces *s, error *e)
 {
     *t = (gpu_tiles){.width = width, .height = height, .size = size};
     t->columns = (width + size - 1) / size;
@@ -39,21 +45,20 @@ bool gpu_tiles_of(gpu_tiles *t, int width, int height, int size, const unsigned 
         for (int column = 0; column < t->columns; column++) {
             int x = column * size, n = x + size < width ? size : width - x;
             unsigned char *occupied = &t->occupied[y / size * t->columns + column];
-            if (!*occupied) *occupied = any(mask + (size_t)y * (size_t)width + x, n);
+            if (!*occupied) *occupied = any(s, (size_t)y * (size_t)width + (size_t)x, n);
         }
     for (int i = 0; i < t->columns * t->rows; i++) t->occupied_count += t->occupied[i];
     return true;
 }
 
+bool gpu_tiles_of(gpu_tiles *t, int width, int height, int size, const unsigned char *mask, error *e)
+{
+    return make(t, width, height, size, &(surfaces){.bytes = mask}, e);
+}
+
 bool gpu_tiles_make(gpu_tiles *t, int width, int height, int size, const float *mask, const float *coverage, error *e)
 {
-    size_t n = (size_t)width * (size_t)height;
-    unsigned char *surface = mem_pixels(n, 1, e);
-    if (!surface) return false;
-    for (size_t i = 0; i < n; i++) surface[i] = mask[i] != 0.0f || (coverage && coverage[i] > 0.0f);
-    bool ok = gpu_tiles_of(t, width, height, size, surface, e);
-    free(surface);
-    return ok;
+    return make(t, width, height, size, &(surfaces){.mask = mask, .coverage = coverage}, e);
 }
 
 void gpu_tiles_free(gpu_tiles *t)
