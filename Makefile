@@ -40,8 +40,8 @@ ALL_CXXFLAGS = -std=c++17 -fPIC -fvisibility=hidden -Isrc $(CXXFLAGS) -Wall -Wex
 
 SRC      := $(filter-out src/main.c,$(wildcard src/*/*.c))
 OBJ      := $(SRC:%.c=$(BUILD)/%.o) $(BUILD)/shaders.o
-SHADERS  := $(wildcard shaders/*.comp shaders/*.frag shaders/*.vert)
-GLSL     := $(SHADERS) $(wildcard shaders/include/*.glsl)
+SHADERS  := $(wildcard shaders/*.comp)
+GLSL     := $(SHADERS) $(wildcard shaders/include/*.glsl shaders/params/*.glsl)
 BIN      := $(BUILD)/ssdo-filter
 PLUGIN   := $(BUILD)/ssdo-images.so $(BUILD)/ssdo-colour.so $(BUILD)/ssdo-trace.so
 UNIT     := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))

@@ -6,14 +6,9 @@
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
 
-layout(std140, binding = 1) uniform Params {
-    float radius; // R, scene units
-    int samples;  // n
-    int seed;
-    int unused;
-} params;
+#include "params/points.glsl"
 
-layout(r32f, binding = 2) writeonly uniform image2D occlusion_image;
+layout(r32f) writeonly uniform image2D occlusion_image;
 
 // Obscurance that the surface at pixel q adds at point P with normal N; 0 outside the sphere or below the tangent plane.
 float obscurance(vec3 P, vec3 N, float bias, ivec2 q) {

@@ -1,5 +1,4 @@
 #version 450 core
-// lint: HORIZON | BITMASK | HORIZON BENT | RUNS | RUNS PLANES BENT | RUNS PLANES CHANGE | RUNS PLANES CHANGE ROUND | RUNS PLANES | RUNS PLANES LIGHT | RUNS LIGHT VISIBILITY | RUNS PLANES BOUNCE | RUNS PLANES LIGHT BOUNCE EXITANT
 // Slices around the view vector, each a set of 64 sectors of equal cosine weight (THEORY.md 2 and 3). With the weight of a slice
 // w = |n_p| (cos n + n sin n), and sums over slices:
 //   occlusion = sum w (open share) / sum w                          so that an empty plane is exactly 1
@@ -21,22 +20,25 @@
 #include "include/arc_line.glsl"
 #include "include/arc_sectors.glsl"
 
-layout(r32f, binding = 2) writeonly uniform image2D scalar_image; // occlusion, or with LIGHT the visibility
-layout(rgba32f, binding = 3) writeonly uniform image2D light_image; // radiance or bent
+#if defined(VISIBILITY) || !(defined(LIGHT) || defined(BOUNCE))
+#define SCALAR
+layout(r32f) writeonly uniform image2D scalar_image; // occlusion, or with LIGHT the visibility
+#endif
+#if defined(LIGHT) || defined(BENT)
+layout(rgba32f) writeonly uniform image2D light_image; // radiance or bent
+#endif
 #ifdef BOUNCE
-layout(rgba32f, binding = 4) readonly uniform image2D sender_image;
-#ifdef EXITANT // eight images are all that GL promises
-layout(rgba32f, binding = 5) writeonly uniform image2D indirect_image;
-#else
-layout(rgba32f, binding = 5) readonly uniform image2D albedo_image;
-layout(rgba32f, binding = 3) writeonly uniform image2D indirect_image;
+PICTURE(rgba32f, sender_image);
+layout(rgba32f) writeonly uniform image2D indirect_image;
+#ifndef EXITANT
+PICTURE(rgba32f, albedo_image);
 #endif
 #endif
 #ifdef CHANGE
-layout(r32f, binding = 4) writeonly uniform image2D change_image; // of the occlusion, by half of the slices
+layout(r32f) writeonly uniform image2D change_image; // of the occlusion, by half of the slices
 #endif
 #ifdef ROUND
-layout(rg32f, binding = 5) uniform image2D sums_image; // of earlier rounds: sum w (open share), sum w
+layout(rg32f) uniform image2D sums_image; // of earlier rounds: sum w (open share), sum w
 #endif
 
 // What a surface sends to us. The side that the camera does not see is a guess: it looks our way, and what it sees is much what we
@@ -46,9 +48,9 @@ vec3 unseen = vec3(0.0);
 
 #ifdef BOUNCE
 vec3 sent_by(ivec2 q, bool seen) {
-    vec3 L = seen ? imageLoad(sender_image, q).rgb : unseen;
+    vec3 L = seen ? FETCH_INSIDE(sender_image, q, vec4(0.0)).rgb : unseen;
 #ifndef EXITANT
-    L *= imageLoad(albedo_image, q).rgb;
+    L *= FETCH_INSIDE(albedo_image, q, vec4(0.0)).rgb;
 #endif
     return L;
 }
@@ -76,7 +78,7 @@ void store(ivec2 p, float scalar, vec3 light, vec3 indirect) {
 #ifdef BOUNCE
     imageStore(indirect_image, p, vec4(indirect, 0.0));
 #endif
-#if defined(VISIBILITY) || !(defined(LIGHT) || defined(BOUNCE))
+#ifdef SCALAR
     imageStore(scalar_image, p, vec4(scalar));
 #endif
 }
@@ -108,7 +110,7 @@ void main() {
 #endif
     vec3 bounced = vec3(0.0);
 #ifdef BOUNCE
-    unseen = UNSEEN * imageLoad(sender_image, p).rgb;
+    unseen = UNSEEN * FETCH(sender_image, p).rgb;
 #endif
 #ifdef BENT
     vec3 shut = vec3(0.0);
@@ -163,16 +165,16 @@ void main() {
     light.open /= all;
     light.open_luminance /= all;
     light.all_luminance /= all;
-    store(p, light.all_luminance > 0.0 ? min(1.0, light.open_luminance / light.all_luminance) : 1.0, light.open, bounced);
+    store(p, light.all_luminance > 0.0 ? min(1.0, ratio(light.open_luminance, light.all_luminance)) : 1.0, light.open, bounced);
 #elif defined(BENT)
-    store(p, open / all, 2.0 / 3.0 * N - shut / all, bounced);
+    store(p, ratio(open, all), 2.0 / 3.0 * N - shut / all, bounced);
 #else
-    store(p, open / all, vec3(0.0), bounced);
+    store(p, ratio(open, all), vec3(0.0), bounced);
 #endif
 #ifdef ROUND
     imageStore(sums_image, p, vec4(open, all, 0.0, 0.0));
 #endif
 #ifdef CHANGE
-    imageStore(change_image, p, vec4(open / all - first_open / first_all));
+    imageStore(change_image, p, vec4(ratio(open, all) - ratio(first_open, first_all)));
 #endif
 }

@@ -1,5 +1,4 @@
 #version 450 core
-// lint: ACROSS | DOWN
 // Depth darkening (Luft, Colditz, Deussen 2006): the unsharp mask of the depth buffer. With D the depth normalised to 0..1 and G a
 // Gaussian over the pixels that hold a surface (the weights of the rest are left out and divided away),
 //   mask = min(0, G*D - D)
@@ -7,16 +6,13 @@
 // along rows, DOWN along columns.
 #include "include/frame.glsl"
 
-layout(std140, binding = 1) uniform Params {
-    float near;      // depth that becomes 0
-    float scale;     // 1 / (depth that becomes 1 - near); 0 where all depths are equal
-    float sigma;     // pixels
-    int radius;      // pixels
-} params;
+#include "params/depthmask.glsl"
 
-layout(rg32f, binding = 2) uniform image2D sums_image; // sum of w D, sum of w
 #ifdef DOWN
-layout(r32f, binding = 3) writeonly uniform image2D mask_image;
+PICTURE(rg32f, sums_image); // sum of w D, sum of w
+layout(r32f) writeonly uniform image2D mask_image;
+#else
+layout(rg32f) writeonly uniform image2D sums_image;
 #endif
 
 float normalised(float depth) { return clamp((depth - params.near) * params.scale, 0.0, 1.0); }
@@ -33,7 +29,7 @@ void main() {
 #ifdef DOWN
     float depth = depth_at(p), mask = 0.0;
     int reach = depth != 0.0 ? reach_at(p.y, frame_size.y) : -1;
-    for (int i = -reach; i <= reach; i++) sums += gaussian(i) * imageLoad(sums_image, p + ivec2(0, i)).rg;
+    for (int i = -reach; i <= reach; i++) sums += gaussian(i) * FETCH(sums_image, p + ivec2(0, i)).rg;
     if (depth != 0.0) mask = sums.r / sums.g - normalised(depth);
     imageStore(mask_image, p, vec4(mask < -1e-6 ? mask : 0.0)); // not the rounding of the sums
 #else

@@ -1,32 +1,32 @@
 #version 450 core
-// lint: VISIBILITY RADIANCE INDIRECT SH BENT BANDS3 | NOTHING
 // Layers of pixels that a surface covers only in part and whose centre missed it (no position): taken from the nearest pixel with a
 // surface, of those equally near the one with the most similar normal (DESIGN.md, Edges).
 #include "include/frame.glsl"
 
-layout(r32f, binding = 2) readonly uniform image2D coverage_image;
+PICTURE(r32f, coverage_image);
 // Written only where there is no surface and read only where there is one, so no pixel is both.
-layout(r32f, binding = 3) uniform image2D occlusion_image;
+#ifdef OCCLUSION
+layout(r32f) uniform image2D occlusion_image;
+#endif
 #ifdef VISIBILITY
-layout(r32f, binding = 4) uniform image2D visibility_image;
+layout(r32f) uniform image2D visibility_image;
 #endif
 #ifdef RADIANCE
-layout(rgba32f, binding = 5) uniform image2D radiance_image;
+layout(rgba32f) uniform image2D radiance_image;
 #endif
 #ifdef INDIRECT
-layout(rgba32f, binding = 6) uniform image2D indirect_image;
+layout(rgba32f) uniform image2D indirect_image;
 #endif
-
 #ifdef BENT
-layout(rgba32f, binding = 10) uniform image2D bent_image;
+layout(rgba32f) uniform image2D bent_image;
 #endif
 #ifdef SH
-layout(rgba32f, binding = 7) uniform image2D sh0_image;
-layout(rgba32f, binding = 8) uniform image2D sh1_image;
-layout(rgba32f, binding = 9) uniform image2D sh2_image;
+layout(rgba32f) uniform image2D sh0_image;
+layout(rgba32f) uniform image2D sh1_image;
+layout(rgba32f) uniform image2D sh2_image;
 #ifdef BANDS3
-layout(rgba32f, binding = 11) uniform image2D sh3_image;
-layout(rgba32f, binding = 12) uniform image2D sh4_image;
+layout(rgba32f) uniform image2D sh3_image;
+layout(rgba32f) uniform image2D sh4_image;
 #endif
 #endif
 
@@ -34,7 +34,7 @@ const int REACH = 2;
 
 void main() {
     ivec2 p = this_pixel();
-    if (!in_tile(p) || depth_at(p) != 0.0 || imageLoad(coverage_image, p).r <= 0.0) return;
+    if (!in_tile(p) || depth_at(p) != 0.0 || FETCH(coverage_image, p).r <= 0.0) return;
     vec3 N = normal_at(p);
     float best = 1e9;
     ivec2 from = p;
@@ -50,7 +50,9 @@ void main() {
             }
         }
     if (from == p) return;
+#ifdef OCCLUSION
     imageStore(occlusion_image, p, imageLoad(occlusion_image, from));
+#endif
 #ifdef VISIBILITY
     imageStore(visibility_image, p, imageLoad(visibility_image, from));
 #endif

@@ -10,16 +10,9 @@
 #include "include/sampling.glsl"
 #include "include/recorded.glsl"
 
-layout(std140, binding = 1) uniform Params {
-    float radius; // R, scene units
-    float bias;   // radians
-    int directions;
-    int steps; // a direction
-    int seed;
-    int unused0, unused1, unused2;
-} params;
+#include "params/hbao.glsl"
 
-layout(r32f, binding = 2) writeonly uniform image2D occlusion_image;
+layout(r32f) writeonly uniform image2D occlusion_image;
 
 // How far the projection of P moves, in pixels, when P moves by R along a direction: the projected radius.
 vec2 projected_radius(vec3 P, vec3 along) {

@@ -10,14 +10,9 @@
 #include "include/sampling.glsl"
 #include "include/recorded.glsl"
 
-layout(std140, binding = 1) uniform Params {
-    float radius; // R, scene units
-    int samples;  // N
-    int seed;
-    int unused;
-} params;
+#include "params/points.glsl"
 
-layout(r32f, binding = 2) writeonly uniform image2D occlusion_image;
+layout(r32f) writeonly uniform image2D occlusion_image;
 
 // Sample i of the kernel, in units of R, in the tangent frame. The four numbers are an additive recurrence (the roots of
 // x^5 = x + 1) shifted per pixel; the fifth is the index itself.

@@ -3,11 +3,8 @@
 // after the filter, which acts on linear quantities (THEORY.md 1.9). Scale and contrast 1 only bound the value.
 #include "include/frame.glsl"
 
-layout(std140, binding = 1) uniform Params {
-    float scale;
-    float contrast;
-} params;
-layout(r32f, binding = 2) uniform image2D scalar_image;
+#include "params/look.glsl"
+layout(r32f) uniform image2D scalar_image;
 
 void main() {
     ivec2 p = this_pixel();

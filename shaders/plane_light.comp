@@ -4,17 +4,15 @@
 #include "include/frame.glsl"
 #include "include/arc_params.glsl"
 
-#include "include/arc_plane.glsl"
-
-layout(rgba32f, binding = 7) uniform image2D planes_image;
-layout(rgba32f, binding = 4) readonly uniform image2D sender_image;
-layout(rgba32f, binding = 5) readonly uniform image2D albedo_image;
+layout(rgba32f) uniform image2D planes_image;
+PICTURE(rgba32f, sender_image);
+PICTURE(rgba32f, albedo_image);
 
 const int GRID = 48;
 
 vec3 sent_by(ivec2 q) {
-    vec3 L = imageLoad(sender_image, q).rgb;
-    return params.exitant == 1 ? L : L * imageLoad(albedo_image, q).rgb;
+    vec3 L = FETCH(sender_image, q).rgb;
+    return params.exitant == 1 ? L : L * FETCH(albedo_image, q).rgb;
 }
 
 void main() {

@@ -1,46 +1,42 @@
 #version 450 core
-// lint: RADIANCE VISIBILITY BENT | RADIANCE VECTOR | VECTOR BANDS3 | BOUNCE | NOTHING
 // Spheres that the camera does not see, each a cone of directions, exactly clipped by the receiver's horizon. Where cones overlap the
 // later one counts only for the rest: F_i is the cosine-weighted share of the hemisphere in cone i, times 1 - the share of the cone that
 // lies in cone j, for each j before i. The whole is taken to be independent of what the method found:
 //   occlusion *= 1 - sum F_i                      of what the spheres block within R
 //   radiance, visibility *= 1 - sum F_i L_i / E   at any distance; L_i the environment's mean over the cone, E the irradiance / pi
 //   bent      -= F_i d_i                             d_i: the cone's axis
-//   VECTOR:   the sh layers and radiance are scaled like occlusion, so that a relight agrees
+//   VECTOR:   radiance and visibility are scaled like occlusion, and SH scales the sh layers so, in a run of its own (no program has
+//             more images than GL promises): a relight agrees
 //   BOUNCE:   indirect += sum F_i albedo_i E(-d_i) (1 - m (d_i . N)) / 2; the last factor is the mean open share, over the receiver's
 //             tangent plane, of the side that the receiver sees, whose normals make the mean cosine m with -d_i
 #include "include/frame.glsl"
 #include "include/environment.glsl"
 
-layout(std140, binding = 1) uniform Params {
-    float radius;   // R
-    int count;
-    float strength; // of the bounce
-    int unused;
-} params;
+#include "params/proxies.glsl"
 
-layout(rgba32f, binding = 2) readonly uniform image2D sphere_image; // row 0: centre in camera space, radius; row 1: albedo
+PICTURE(rgba32f, sphere_image); // row 0: centre in camera space, radius; row 1: albedo
 #ifdef BOUNCE
-layout(rgba32f, binding = 3) uniform image2D indirect_image;
-#else
-layout(r32f, binding = 3) uniform image2D occlusion_image;
+layout(rgba32f) uniform image2D indirect_image;
+#endif
+#ifdef OCCLUSION
+layout(r32f) uniform image2D occlusion_image;
 #endif
 #ifdef VISIBILITY
-layout(r32f, binding = 4) uniform image2D visibility_image;
+layout(r32f) uniform image2D visibility_image;
 #endif
 #ifdef RADIANCE
-layout(rgba32f, binding = 5) uniform image2D radiance_image;
+layout(rgba32f) uniform image2D radiance_image;
 #endif
 #ifdef BENT
-layout(rgba32f, binding = 6) uniform image2D bent_image;
+layout(rgba32f) uniform image2D bent_image;
 #endif
-#ifdef VECTOR
-layout(rgba32f, binding = 7) uniform image2D sh0_image;
-layout(rgba32f, binding = 8) uniform image2D sh1_image;
-layout(rgba32f, binding = 9) uniform image2D sh2_image;
+#ifdef SH
+layout(rgba32f) uniform image2D sh0_image;
+layout(rgba32f) uniform image2D sh1_image;
+layout(rgba32f) uniform image2D sh2_image;
 #ifdef BANDS3
-layout(rgba32f, binding = 10) uniform image2D sh3_image;
-layout(rgba32f, binding = 11) uniform image2D sh4_image;
+layout(rgba32f) uniform image2D sh3_image;
+layout(rgba32f) uniform image2D sh4_image;
 #endif
 #endif
 
@@ -85,7 +81,7 @@ float overlap(Cone a, Cone b) {
     return (1.0 - t) * min(1.0 - a.cs, 1.0 - b.cs) / (1.0 - a.cs);
 }
 
-Cone cone_at(int i, vec3 P, vec3 N, float reach) { return cone_of(imageLoad(sphere_image, ivec2(i, 0)), P, N, reach); }
+Cone cone_at(int i, vec3 P, vec3 N, float reach) { return cone_of(FETCH(sphere_image, ivec2(i, 0)), P, N, reach); }
 
 // F_i over the share of cone i alone.
 float left_by_others(int i, Cone k, vec3 P, vec3 N, float reach) {
@@ -113,7 +109,7 @@ void apply(ivec2 p, vec3 P, vec3 N) {
         // Directions nearer to N count more, and their normals lean up: 0.25 (1 - c^2) g / c, g the mean of the two sines' product.
         float c = dot(k.axis, N), g = 0.5 * k.sn * sqrt(1.0 - k.sn);
         float open = min(0.5 - 0.5 * lean * c + 0.25 * (1.0 - c * c) * g / max(c, k.sn), 1.0);
-        light += F * left_by_others(i, k, P, N, UNLIMITED) * open * imageLoad(sphere_image, ivec2(i, 1)).rgb * sh_irradiance_over_pi(to_map(-k.axis));
+        light += F * left_by_others(i, k, P, N, UNLIMITED) * open * FETCH(sphere_image, ivec2(i, 1)).rgb * sh_irradiance_over_pi(to_map(-k.axis));
     }
     imageStore(indirect_image, p, imageLoad(indirect_image, p) + vec4(params.strength * light, 0.0));
 }
@@ -141,10 +137,14 @@ void apply(ivec2 p, vec3 P, vec3 N) {
     }
     float open = 1.0 - min(blocked, 1.0), open_luminance = 1.0 - min(blocked_luminance, 1.0);
     vec3 open_light = 1.0 - min(blocked_light, vec3(1.0));
-    imageStore(occlusion_image, p, open * imageLoad(occlusion_image, p));
 #ifdef VECTOR
     open_light = vec3(open);
     open_luminance = open;
+#endif
+#ifdef OCCLUSION
+    imageStore(occlusion_image, p, open * imageLoad(occlusion_image, p));
+#endif
+#ifdef SH
     imageStore(sh0_image, p, open * imageLoad(sh0_image, p));
     imageStore(sh1_image, p, open * imageLoad(sh1_image, p));
     imageStore(sh2_image, p, open * imageLoad(sh2_image, p));

@@ -1,5 +1,4 @@
 #version 450 core
-// lint: NOTHING | BANDS3
 // Screen-space spherical harmonics occlusion (Herholz et al. 2011): per pixel the SH vector of the cosine-weighted visibility,
 //   o_lm = (2 pi / N) sum V(w) max(0, n.w) Y_lm(w),   l <= 2 (BANDS3: 3), in the axes of the world
 // divided by (2 / N) sum max(0, n.w), which makes an open surface's o_00 exact. V is SSDO's point test. The samples come from 16 sets,
@@ -9,22 +8,15 @@
 #include "include/recorded.glsl"
 #include "include/sh.glsl"
 
-layout(std140, binding = 1) uniform Params {
-    float radius;    // R, scene units
-    float thickness; // scene units; huge = infinite
-    int samples;     // N
-    int seed;
-    vec4 world_from_camera[3]; // rows
-    vec4 bands;                // factors of l = 0, 1, 2, 3: the zonal Gaussian low-pass exp(-sigma^2 l (l + 1) / 2)
-} params;
+#include "params/s3ho.glsl"
 
 // Coefficients 0 1 2 | 3 4 5 | 6 7 8 | 9 10 11 12 | 13 14 15; the first image's w is the cosine-weighted open share, o_00 / (pi Y_00).
-layout(rgba32f, binding = 2) writeonly uniform image2D sh0_image;
-layout(rgba32f, binding = 3) writeonly uniform image2D sh1_image;
-layout(rgba32f, binding = 4) writeonly uniform image2D sh2_image;
+layout(rgba32f) writeonly uniform image2D sh0_image;
+layout(rgba32f) writeonly uniform image2D sh1_image;
+layout(rgba32f) writeonly uniform image2D sh2_image;
 #ifdef BANDS3
-layout(rgba32f, binding = 5) writeonly uniform image2D sh3_image;
-layout(rgba32f, binding = 6) writeonly uniform image2D sh4_image;
+layout(rgba32f) writeonly uniform image2D sh3_image;
+layout(rgba32f) writeonly uniform image2D sh4_image;
 #endif
 
 // Which of the 16 sets a pixel has: neighbours far apart (the 4 x 4 ordered dither matrix).
@@ -75,5 +67,5 @@ void main() {
         for (int c = 0; c < SH_COUNT; c++) o[c] += cosine * y[c];
     }
     for (int c = 0; c < SH_COUNT; c++) o[c] *= PI / total * band_of(c, params.bands);
-    store(p, o, open / total);
+    store(p, o, ratio(open, total));
 }

@@ -1,29 +1,28 @@
 #version 450 core
-// lint: NOTHING | BANDS3
 // Brings the 16 sample sets of the 4 x 4 pattern together: the mean of the four 4 x 4 windows that hold the pixel, so every set has the
-// same weight where nothing interrupts; taps across an edge lose theirs (plane distance and normals, as in blur.frag). The
+// same weight where nothing interrupts; taps across an edge lose theirs (plane distance and normals, as in blur.comp). The
 // coefficients are linear in visibility, so the filter acts on them and not on light.
 #include "include/frame.glsl"
 
-layout(rgba32f, binding = 2) readonly uniform image2D sh0_in;
-layout(rgba32f, binding = 3) readonly uniform image2D sh1_in;
-layout(rgba32f, binding = 4) readonly uniform image2D sh2_in;
-layout(rgba32f, binding = 5) writeonly uniform image2D sh0_out;
-layout(rgba32f, binding = 6) writeonly uniform image2D sh1_out;
-layout(rgba32f, binding = 7) writeonly uniform image2D sh2_out;
+PICTURE(rgba32f, sh0_in);
+PICTURE(rgba32f, sh1_in);
+PICTURE(rgba32f, sh2_in);
+layout(rgba32f) writeonly uniform image2D sh0_out;
+layout(rgba32f) writeonly uniform image2D sh1_out;
+layout(rgba32f) writeonly uniform image2D sh2_out;
 #ifdef BANDS3
-layout(rgba32f, binding = 8) readonly uniform image2D sh3_in;
-layout(rgba32f, binding = 9) readonly uniform image2D sh4_in;
-layout(rgba32f, binding = 10) writeonly uniform image2D sh3_out;
-layout(rgba32f, binding = 11) writeonly uniform image2D sh4_out;
+PICTURE(rgba32f, sh3_in);
+PICTURE(rgba32f, sh4_in);
+layout(rgba32f) writeonly uniform image2D sh3_out;
+layout(rgba32f) writeonly uniform image2D sh4_out;
 #endif
 
 void main() {
     ivec2 p = this_pixel();
     if (!in_tile(p)) return;
-    vec4 c0 = imageLoad(sh0_in, p), c1 = imageLoad(sh1_in, p), c2 = imageLoad(sh2_in, p);
+    vec4 c0 = FETCH(sh0_in, p), c1 = FETCH(sh1_in, p), c2 = FETCH(sh2_in, p);
 #ifdef BANDS3
-    vec4 c3 = imageLoad(sh3_in, p), c4 = imageLoad(sh4_in, p), s3 = vec4(0.0), s4 = vec4(0.0);
+    vec4 c3 = FETCH(sh3_in, p), c4 = FETCH(sh4_in, p), s3 = vec4(0.0), s4 = vec4(0.0);
 #endif
     float depth = depth_at(p);
     vec3 P = position_of(p, depth), N = normal_at(p);
@@ -40,12 +39,12 @@ void main() {
             float same_way = max(0.0, dot(N, normal_at(q)));
             float window = (abs(x) == 2 ? 0.5 : 1.0) * (abs(y) == 2 ? 0.5 : 1.0);
             float w = window * exp(-0.5 * off_plane * off_plane) * pow(same_way, 8.0);
-            s0 += w * (imageLoad(sh0_in, q) - c0);
-            s1 += w * (imageLoad(sh1_in, q) - c1);
-            s2 += w * (imageLoad(sh2_in, q) - c2);
+            s0 += w * (FETCH(sh0_in, q) - c0);
+            s1 += w * (FETCH(sh1_in, q) - c1);
+            s2 += w * (FETCH(sh2_in, q) - c2);
 #ifdef BANDS3
-            s3 += w * (imageLoad(sh3_in, q) - c3);
-            s4 += w * (imageLoad(sh4_in, q) - c4);
+            s3 += w * (FETCH(sh3_in, q) - c3);
+            s4 += w * (FETCH(sh4_in, q) - c4);
 #endif
             total += w;
         }

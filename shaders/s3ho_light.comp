@@ -1,30 +1,25 @@
 #version 450 core
-// lint: LIGHT VISIBILITY | LIGHT VISIBILITY BANDS3 | NOTHING
 // From the SH vector o of cosine-weighted visibility to the layers:
 //   radiance   = (1 / pi) sum o_lm L_lm           L_lm: the environment's plain radiance coefficients in the axes of o
 //   visibility = luminance of that over its value with nothing in the way (o_lm = A_l Y_lm(n), A = pi, 2 pi / 3, pi / 4, 0)
 #include "include/frame.glsl"
 #include "include/sh.glsl"
 
-layout(std140, binding = 1) uniform Params {
-    vec4 world_from_camera[3]; // rows
-    vec4 bands;                // A_0, A_1, A_2, A_3, low-pass included
-    vec4 light[16];            // rgb L_lm
-} params;
+#include "params/s3ho_light.glsl"
 
-layout(rgba32f, binding = 2) readonly uniform image2D sh0_image;
-layout(rgba32f, binding = 3) readonly uniform image2D sh1_image;
-layout(rgba32f, binding = 4) readonly uniform image2D sh2_image;
-layout(r32f, binding = 5) writeonly uniform image2D occlusion_image;
+PICTURE(rgba32f, sh0_image);
+PICTURE(rgba32f, sh1_image);
+PICTURE(rgba32f, sh2_image);
+layout(r32f) writeonly uniform image2D occlusion_image;
 #ifdef BANDS3
-layout(rgba32f, binding = 8) readonly uniform image2D sh3_image;
-layout(rgba32f, binding = 9) readonly uniform image2D sh4_image;
+PICTURE(rgba32f, sh3_image);
+PICTURE(rgba32f, sh4_image);
 #endif
 #ifdef LIGHT
-layout(rgba32f, binding = 6) writeonly uniform image2D radiance_image;
+layout(rgba32f) writeonly uniform image2D radiance_image;
 #endif
 #ifdef VISIBILITY
-layout(r32f, binding = 7) writeonly uniform image2D visibility_image;
+layout(r32f) writeonly uniform image2D visibility_image;
 #endif
 
 vec3 lit(float o[SH_COUNT]) {
@@ -44,12 +39,12 @@ vec3 open_light(vec3 n) {
 void main() {
     ivec2 p = this_pixel();
     if (!in_tile(p)) return;
-    vec4 a = imageLoad(sh0_image, p), b = imageLoad(sh1_image, p), c = imageLoad(sh2_image, p);
+    vec4 a = FETCH(sh0_image, p), b = FETCH(sh1_image, p), c = FETCH(sh2_image, p);
     bool surface = depth_at(p) != 0.0;
     imageStore(occlusion_image, p, vec4(surface ? a.w : 1.0));
 #if defined(LIGHT) || defined(VISIBILITY)
 #ifdef BANDS3
-    vec4 d = imageLoad(sh3_image, p), e = imageLoad(sh4_image, p);
+    vec4 d = FETCH(sh3_image, p), e = FETCH(sh4_image, p);
     float o[SH_COUNT] = float[](a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, d.x, d.y, d.z, d.w, e.x, e.y, e.z);
 #else
     float o[SH_COUNT] = float[](a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z);

@@ -6,12 +6,12 @@
 #include "include/sampling.glsl"
 #include "include/environment.glsl"
 
-layout(rg32f, binding = 2) readonly uniform image2D material_image;   // roughness, metallic
-layout(rgba32f, binding = 3) readonly uniform image2D albedo_image;
-layout(rgba32f, binding = 4) writeonly uniform image2D specular_image; // rgb
-layout(rgba32f, binding = 5) writeonly uniform image2D diffuse_share_image; // kD
+PICTURE(rg32f, material_image);   // roughness, metallic
+PICTURE(rgba32f, albedo_image);
+layout(rgba32f) writeonly uniform image2D specular_image; // rgb
+layout(rgba32f) writeonly uniform image2D diffuse_share_image; // kD
 
-layout(std140, binding = 1) uniform Params { int samples; int base_albedo; } params;
+#include "params/specular.glsl"
 
 float geometry_smith(float nv, float nl, float alpha) {
     float a2 = alpha * alpha;
@@ -36,8 +36,8 @@ void main() {
         imageStore(diffuse_share_image, p, vec4(1.0));
         return;
     }
-    vec2 material = clamp(imageLoad(material_image, p).rg, 0.0, 1.0);
-    vec3 base = params.base_albedo == 1 ? imageLoad(albedo_image, p).rgb : vec3(0.0);
+    vec2 material = clamp(FETCH(material_image, p).rg, 0.0, 1.0);
+    vec3 base = params.base_albedo == 1 ? FETCH(albedo_image, p).rgb : vec3(0.0);
     vec3 f0 = mix(vec3(0.04), base, material.y);
     float alpha = max(material.x * material.x, 1e-3);
     vec3 P = position_of(p, depth), N = normal_at(p), V = view_of(P);

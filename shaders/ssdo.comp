@@ -1,5 +1,4 @@
 #version 450 core
-// lint: LIGHT VISIBILITY | LIGHT | NOTHING
 // SSDO, direct light: one loop, several outputs (chapter 5).
 //   occlusion  = (2 / N) sum V cos                  the cosine-weighted open share of (1 / pi) sum V cos (2 pi / N)
 //   radiance   = sum (1 / pi) L_in V cos (2 pi / N)
@@ -9,12 +8,12 @@
 #include "include/environment.glsl"
 #include "include/ssdo.glsl"
 
-layout(r32f, binding = 2) writeonly uniform image2D occlusion_image;
+layout(r32f) writeonly uniform image2D occlusion_image;
 #ifdef LIGHT
-layout(rgba32f, binding = 3) writeonly uniform image2D radiance_image;
+layout(rgba32f) writeonly uniform image2D radiance_image;
 #endif
 #ifdef VISIBILITY
-layout(r32f, binding = 4) writeonly uniform image2D visibility_image;
+layout(r32f) writeonly uniform image2D visibility_image;
 #endif
 
 void store(ivec2 p, float occlusion, vec3 radiance, float visibility) {
@@ -39,12 +38,14 @@ void main() {
     mat3 tangents = tangent_frame(normal_at(p));
     vec2 noise = pixel_hash(uvec2(p) + uint(params.seed) * 7919u);
     float open = 0.0, all_light = 0.0, open_light = 0.0;
+    bool nothing = true; // blocks
     vec3 light = vec3(0.0);
     float solid_angle = 2.0 * PI / float(params.samples);
     for (int i = 0; i < params.samples; i++) {
         Sample s = ssdo_sample(i, P, tangents, noise);
         float visible = s.blocked ? 0.0 : 1.0;
         open += visible * s.cosine;
+        nothing = nothing && !s.blocked;
 #if defined(LIGHT) || defined(VISIBILITY)
         vec3 direction = to_map(s.direction);
         vec3 L = radiance_from(direction, params.level < 0.0 ? map_level(direction, solid_angle) : params.level);
@@ -55,5 +56,5 @@ void main() {
 #endif
     }
     float norm = 2.0 / float(params.samples);
-    store(p, min(1.0, open * norm), light * norm, all_light > 0.0 ? open_light / all_light : 1.0);
+    store(p, nothing ? 1.0 : min(1.0, open * norm), light * norm, all_light > 0.0 ? ratio(open_light, all_light) : 1.0);
 }

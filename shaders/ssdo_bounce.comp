@@ -8,13 +8,13 @@
 #include "include/sampling.glsl"
 #include "include/ssdo.glsl"
 
-layout(rgba32f, binding = 2) readonly uniform image2D sender_image; // blurred radiance before albedo, or a beauty
-layout(rgba32f, binding = 3) readonly uniform image2D albedo_image;
-layout(rgba32f, binding = 4) writeonly uniform image2D indirect_image;
+PICTURE(rgba32f, sender_image); // blurred radiance before albedo, or a beauty
+PICTURE(rgba32f, albedo_image);
+layout(rgba32f) writeonly uniform image2D indirect_image;
 
 vec3 exitant_radiance(ivec2 q) {
-    vec3 L = imageLoad(sender_image, q).rgb;
-    return params.exitant == 1 ? L : L * imageLoad(albedo_image, q).rgb;
+    vec3 L = FETCH(sender_image, q).rgb;
+    return params.exitant == 1 ? L : L * FETCH(albedo_image, q).rgb;
 }
 
 void main() {

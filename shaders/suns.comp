@@ -13,7 +13,7 @@
 #include "include/suns.glsl"
 #include "include/arc_march.glsl"
 
-layout(rgba32f, binding = 3) writeonly uniform image2D sun_image; // rgb light, a its share of what arrives with nothing in the way
+layout(rgba32f) writeonly uniform image2D sun_image; // rgb light, a its share of what arrives with nothing in the way
 
 // Where a ray leaves the box of all surfaces, beyond which nothing can block it; in pixels along its line.
 float way_out(vec3 P, vec3 S, Line line) {

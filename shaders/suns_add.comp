@@ -1,5 +1,4 @@
 #version 450 core
-// lint: | VISIBILITY
 // Adds the suns' light to the filtered light of the rest of the environment. Their shadows have sharp edges, so all they get is the
 // average over a pixel's neighbours on its own surface (weights 1 2 1 each way): it takes out the grain that a march's steps leave
 // along the far edge of a shadow, and the stairs of the others.
@@ -9,9 +8,9 @@
 #include "include/arc_params.glsl"
 #include "include/suns.glsl"
 
-layout(r32f, binding = 2) uniform image2D scalar_image;
-layout(rgba32f, binding = 3) readonly uniform image2D sun_image;
-layout(rgba32f, binding = 4) uniform image2D light_image;
+layout(r32f) uniform image2D scalar_image;
+PICTURE(rgba32f, sun_image);
+layout(rgba32f) uniform image2D light_image;
 
 const float CONNECTED = 2.0; // footprints between a neighbour and a tangent plane, either's
 
@@ -22,7 +21,7 @@ void main() {
     if (depth == 0.0) return;
     vec3 P = position_of(p, depth), N = normal_at(p), all = vec3(0.0);
     for (int i = 0; i < params.suns; i++) all += sunlight(i, N);
-    vec4 own = imageLoad(sun_image, p);
+    vec4 own = FETCH(sun_image, p);
     float near = CONNECTED * footprint(depth), sum = 4.0 * own.a, total = 4.0;
     for (int k = 0; k < 9; k++) {
         ivec2 q = p + ivec2(k % 3, k / 3) - 1;
@@ -31,15 +30,15 @@ void main() {
         vec3 gap = position_of(q, other) - P;
         if (min(abs(dot(N, gap)), abs(dot(normal_at(q), gap))) > near) continue;
         float w = (k & 1) == 1 ? 2.0 : 1.0;
-        sum += w * imageLoad(sun_image, q).a;
+        sum += w * FETCH(sun_image, q).a;
         total += w;
     }
-    float share = sum / total;
-    vec3 light = share <= own.a ? own.rgb * (own.a > 0.0 ? share / own.a : 1.0) : own.rgb + (share - own.a) * all;
+    float share = ratio(sum, total);
+    vec3 light = share <= own.a ? own.rgb * (own.a > 0.0 ? ratio(share, own.a) : 1.0) : own.rgb + (share - own.a) * all;
     imageStore(light_image, p, vec4(imageLoad(light_image, p).rgb + light, 0.0));
 #ifdef VISIBILITY
     float sky = dot(sh_irradiance_over_pi(stored.rest, to_map(N)), LUMINANCE), suns = dot(all, LUMINANCE);
     float seen = imageLoad(scalar_image, p).r;
-    if (sky + suns > 0.0) imageStore(scalar_image, p, vec4((seen * sky + share * suns) / (sky + suns)));
+    if (sky + suns > 0.0) imageStore(scalar_image, p, vec4(ratio(seen * sky + share * suns, sky + suns)));
 #endif
 }

@@ -1,14 +1,12 @@
 #version 450 core
-// lint: | PLANES
 // Depth and normal in one texel, for passes that read many of them: the bits of the depth, and pack_normal; with PLANES its highest
 // bit is set where the surface lies on one of the frame's planes.
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
 #include "include/arc_params.glsl"
-#include "include/arc_plane.glsl"
 
-layout(rg32ui, binding = 2) writeonly uniform uimage2D surface_image;
-layout(rgba32f, binding = 7) readonly uniform image2D planes_image;
+layout(rg32ui) writeonly uniform uimage2D surface_image;
+PICTURE(rgba32f, planes_image);
 
 void main() {
     ivec2 p = this_pixel();
@@ -19,8 +17,8 @@ void main() {
 #ifdef PLANES
     vec3 P = position_of(p, depth);
     for (int i = 0; i < params.planes; i++) {
-        vec4 equation = imageLoad(planes_image, ivec2(PLANE_EQUATION, i));
-        float room = imageLoad(planes_image, ivec2(PLANE_LIGHT, i)).w * (is_orthographic() ? 1.0 : depth);
+        vec4 equation = FETCH(planes_image, ivec2(PLANE_EQUATION, i));
+        float room = FETCH(planes_image, ivec2(PLANE_LIGHT, i)).w * (is_orthographic() ? 1.0 : depth);
         if (abs(dot(equation.xyz, P) - equation.w) <= room && dot(equation.xyz, N) >= 0.99) normal |= 1u << 31u;
     }
 #endif

@@ -3,13 +3,10 @@
 // the same picture stops at the same budgets.
 #include "include/frame.glsl"
 
-layout(std140, binding = 1) uniform Params {
-    int size; // of a tile, pixels
-    int columns;
-} params;
+#include "params/tile_error.glsl"
 
-layout(r32f, binding = 2) readonly uniform image2D error_image; // squares
-layout(std430, binding = 0) writeonly buffer Tiles { vec2 tiles[]; };
+PICTURE(r32f, error_image); // squares
+layout(std430) writeonly buffer Tiles { vec2 tiles[]; };
 
 shared vec2 parts[64];
 
@@ -19,7 +16,7 @@ void main() {
     for (int y = here.y; y < params.size; y += 8)
         for (int x = here.x; x < params.size; x += 8) {
             ivec2 p = corner + ivec2(x, y);
-            if (depth_at(p) != 0.0) sum += vec2(imageLoad(error_image, p).r, 1.0);
+            if (depth_at(p) != 0.0) sum += vec2(FETCH(error_image, p).r, 1.0);
         }
     parts[gl_LocalInvocationIndex] = sum;
     barrier();

@@ -1,18 +1,17 @@
 #version 450 core
-// lint: LIGHT BOUNCE VISIBILITY | LIGHT | BOUNCE | NOTHING
 // From the sums over all samples to the layers.
 #include "include/frame.glsl"
 #include "include/trace.glsl"
 
-layout(r32f, binding = 4) uniform image2D occlusion_image;
+layout(r32f) uniform image2D occlusion_image;
 #ifdef LIGHT
-layout(rgba32f, binding = 5) uniform image2D radiance_image;
+layout(rgba32f) uniform image2D radiance_image;
 #endif
 #ifdef BOUNCE
-layout(rgba32f, binding = 6) uniform image2D indirect_image;
+layout(rgba32f) uniform image2D indirect_image;
 #endif
 #ifdef VISIBILITY
-layout(r32f, binding = 7) writeonly uniform image2D visibility_image;
+layout(r32f) writeonly uniform image2D visibility_image;
 #endif
 
 void main() {

@@ -3,16 +3,16 @@
 #include "include/frame.glsl"
 #include "include/trace.glsl"
 
-layout(std430, binding = 1) readonly buffer Hits { Hit hits[]; };
-layout(std430, binding = 2) readonly buffer Gains { vec4 gains[]; };
-layout(rgba32f, binding = 6) uniform image2D indirect_image;
+layout(std430) readonly buffer Hits { Hit hits[]; };
+layout(std430) readonly buffer Gains { vec4 gains[]; };
+layout(rgba32f) uniform image2D indirect_image;
 
 void main() {
     uint i = this_item();
     if (i >= batch_size()) return;
     ivec2 p = pixel_of(i);
-    vec3 light = hits[i].triangle == MISS ? gains[i].rgb : vec3(0.0);
+    vec3 light = hits[i].triangle == HIT_NOTHING ? gains[i].rgb : vec3(0.0);
     uint j = batch_size() + i;
-    if (params.choices.x > 0 && hits[j].triangle == MISS) light += gains[j].rgb;
+    if (params.choices.x > 0 && hits[j].triangle == HIT_NOTHING) light += gains[j].rgb;
     imageStore(indirect_image, p, imageLoad(indirect_image, p) + vec4(light, 0.0));
 }

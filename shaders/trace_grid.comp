@@ -3,31 +3,32 @@
 // There are several grids (src/passes/grid.h), one after the other; each looks no further than those before have found.
 #include "include/frame.glsl"
 #include "include/rays.glsl"
+#include "include/triangles.glsl"
+#include "params/trace_grid.glsl"
 
 struct Grid {
     vec4 low;   // corner
     vec4 cell;  // size of a cell
     ivec4 size; // in cells; w: its first offset. 0: no grid
 };
-layout(std140, binding = 1) uniform Params { Grid grids[6]; } params;
 
-layout(std430, binding = 0) readonly buffer Rays { Ray rays[]; };
-layout(std430, binding = 1) writeonly buffer Hits { Hit hits[]; };
-layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
-layout(std430, binding = 5) readonly buffer Items { uint items[]; };
+layout(std430) readonly buffer Rays { Ray rays[]; };
+layout(std430) writeonly buffer Hits { Hit hits[]; };
+layout(std430) readonly buffer Offsets { uint offsets[]; };
+layout(std430) readonly buffer Items { uint items[]; };
 
 // Edges are a little wide, so that no ray slips through between two triangles.
 const float EDGE = 1e-6;
 
-// Moeller and Trumbore 1997. The distance, or FAR.
+// Moeller and Trumbore 1997. The distance, or RAY_FAR.
 float distance_to(Triangle t, vec3 origin, vec3 direction) {
     vec3 p = cross(direction, t.edge2.xyz), s = origin - t.corner.xyz;
     float det = dot(t.edge1.xyz, p);
-    if (det == 0.0) return FAR;
+    if (det == 0.0) return RAY_FAR;
     float u = dot(s, p) / det;
     vec3 q = cross(s, t.edge1.xyz);
     float v = dot(direction, q) / det, at = dot(t.edge2.xyz, q) / det;
-    return u >= -EDGE && v >= -EDGE && u + v <= 1.0 + EDGE && at > 0.0 ? at : FAR;
+    return u >= -EDGE && v >= -EDGE && u + v <= 1.0 + EDGE && at > 0.0 ? at : RAY_FAR;
 }
 
 void search_cell(uint cell, Ray r, inout Hit best) {
@@ -53,7 +54,7 @@ void search_grid(Grid g, Ray r, inout Hit best) {
     for (int i = 0; i < most; i++) {
         search_cell(uint(g.size.w + (at.z * g.size.y + at.y) * g.size.x + at.x), r, best);
         float out_at = min(next.x, min(next.y, next.z));
-        if (best.t <= out_at || (wants_any && best.triangle != MISS)) return;
+        if (best.t <= out_at || (wants_any && best.triangle != HIT_NOTHING)) return;
         bool x = next.x == out_at, y = !x && next.y == out_at;
         bvec3 axis = bvec3(x, y, !x && !y);
         at += mix(ivec3(0), way, axis);
@@ -67,13 +68,15 @@ void main() {
     if (i >= uint(tile.y)) return;
     Ray r = rays[i];
     if (r.origin.w < 0.0) {
-        hits[i] = Hit(0.0, NO_RAY);
+        hits[i] = Hit(0.0, HIT_NO_RAY);
         return;
     }
-    Hit best = Hit(r.origin.w, MISS);
+    Hit best = Hit(r.origin.w, HIT_NOTHING);
     bool wants_any = r.direction.w != 0.0;
-    for (int k = 0; k < 6; k++)
-        if (params.grids[k].size.x > 0 && !(wants_any && best.triangle != MISS)) search_grid(params.grids[k], r, best);
-    if (best.triangle == MISS) best.t = FAR;
+    for (int k = 0; k < GRID_COUNT; k++) {
+        Grid g = Grid(params.low[k], params.cell[k], params.size[k]);
+        if (g.size.x > 0 && !(wants_any && best.triangle != HIT_NOTHING)) search_grid(g, r, best);
+    }
+    if (best.triangle == HIT_NOTHING) best.t = RAY_FAR;
     hits[i] = best;
 }

@@ -1,13 +1,21 @@
 #version 450 core
-// lint: FIND | SETTLE
 // Where the pixels' points lie on the mesh. FIND sends a short ray through each along the line of sight; SETTLE, when it is traced,
 // puts the point onto the surface that was found. Where the mesh is not, the point stays, with the picture's normal.
 #include "include/frame.glsl"
 #include "include/trace.glsl"
+#ifdef SETTLE
+#include "include/triangles.glsl"
+#endif
 
-layout(std430, binding = 0) buffer Rays { Ray rays[]; };
-layout(std430, binding = 1) readonly buffer Hits { Hit hits[]; };
-layout(r32f, binding = 4) writeonly uniform image2D occlusion_image;
+#ifdef FIND
+layout(std430) writeonly buffer Rays { Ray rays[]; };
+#else
+layout(std430) readonly buffer Rays { Ray rays[]; };
+layout(std430) readonly buffer Hits { Hit hits[]; };
+layout(rgba32f) writeonly uniform image2D point_image; // mesh space; w: how far rays are lifted
+layout(rgba32f) writeonly uniform image2D face_image;  // the surface's own normal, towards the eye; w: 1 if the mesh is there
+layout(r32f) writeonly uniform image2D occlusion_image;
+#endif
 
 const float NEAR = 2e-3;  // of its depth: as far as the mesh may lie off the point; half floats are 5e-4 wrong
 const float LIFT = 1e-4;  // of its depth: for points that are not on the mesh
@@ -23,7 +31,7 @@ void main() {
     rays[i] = Ray(vec4(to_mesh(P - slack * away) + mesh_offset(), 2.0 * slack), vec4(to_mesh(away), 0.0));
 #else
     vec4 point = vec4(to_mesh(P) + mesh_offset(), LIFT * depth), face = vec4(to_mesh(normal_at(p)), 0.0);
-    if (hits[i].triangle < NO_RAY) {
+    if (hits[i].triangle < HIT_NO_RAY) {
         Triangle t = triangles[hits[i].triangle];
         point.xyz = rays[i].origin.xyz + hits[i].t * rays[i].direction.xyz;
         point.w = lift_of(t, point.xyz);

@@ -1,5 +1,4 @@
 #version 450 core
-// lint: LIGHT DISTANT | DISTANT | NOTHING
 // A sample's first rays: one by cosine from every point, and with LIGHT one by brightness.
 // Rays i and batch + i belong to pixel i. DISTANT: what lies beyond the radius matters too, and what is hit.
 #include "include/frame.glsl"
@@ -7,21 +6,23 @@
 #include "include/environment.glsl"
 #include "include/trace.glsl"
 
-layout(std430, binding = 0) writeonly buffer Rays { Ray rays[]; };
+PICTURE(rgba32f, point_image); // trace_points.comp
+PICTURE(rgba32f, face_image);
+layout(std430) writeonly buffer Rays { Ray rays[]; };
 #ifdef LIGHT
 #include "include/choices.glsl"
-layout(std430, binding = 2) writeonly buffer Gains { vec4 gains[]; };
+layout(std430) writeonly buffer Gains { vec4 gains[]; };
 #endif
 
 void main() {
     uint i = this_item();
     if (i >= batch_size()) return;
     ivec2 p = pixel_of(i);
-    vec4 at = imageLoad(point_image, p);
-    vec3 face = imageLoad(face_image, p).xyz, N = normal_at(p);
+    vec4 at = FETCH(point_image, p);
+    vec3 face = FETCH(face_image, p).xyz, N = normal_at(p);
     vec3 w = tangent_frame(N) * cosine_direction(sequence2() + shift_of(p, 0u).xy);
 #ifdef DISTANT
-    rays[i] = ray_from(at.xyz, face, at.w, to_mesh(w), FAR, false);
+    rays[i] = ray_from(at.xyz, face, at.w, to_mesh(w), RAY_FAR, false);
 #else
     rays[i] = ray_from(at.xyz, face, at.w, to_mesh(w), params.radius, true);
 #endif
@@ -32,7 +33,7 @@ void main() {
     w = from_map(bright);
     uint j = batch_size() + i;
     vec3 gain = light_from(bright, dot(N, w));
-    rays[j] = ray_from(at.xyz, face, at.w, to_mesh(w), gain == vec3(0.0) ? -1.0 : FAR, true);
+    rays[j] = ray_from(at.xyz, face, at.w, to_mesh(w), gain == vec3(0.0) ? -1.0 : RAY_FAR, true);
     gains[j] = vec4(gain, 0.0);
 #endif
 }

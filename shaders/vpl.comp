@@ -6,15 +6,11 @@
 // There is no radius: light crosses the whole scene. There is no visibility either: it crosses what stands between.
 #include "include/frame.glsl"
 
-layout(std140, binding = 1) uniform Params {
-    float strength;
-    int count;
-    int unused0, unused1;
-} params;
+#include "params/vpl.glsl"
 
 // A column a light: position and area; normal; radiance.
-layout(rgba32f, binding = 2) readonly uniform image2D lights_image;
-layout(rgba32f, binding = 3) writeonly uniform image2D indirect_image;
+PICTURE(rgba32f, lights_image);
+layout(rgba32f) writeonly uniform image2D indirect_image;
 
 void main() {
     ivec2 p = this_pixel();
@@ -25,14 +21,14 @@ void main() {
         vec3 P = position_of(p, depth), N = normal_at(p);
         float factors = 0.0;
         for (int k = 0; k < params.count; k++) {
-            vec4 disc = imageLoad(lights_image, ivec2(k, 0));
+            vec4 disc = FETCH(lights_image, ivec2(k, 0));
             vec3 w = disc.xyz - P; // unnormalised: both cosines carry a length
             float dd = dot(w, w);
-            float received = dot(N, w), sent = -dot(imageLoad(lights_image, ivec2(k, 1)).xyz, w);
+            float received = dot(N, w), sent = -dot(FETCH(lights_image, ivec2(k, 1)).xyz, w);
             if (received <= 0.0 || sent <= 0.0) continue;
             float F = disc.w * received * sent / (dd * (PI * dd + disc.w));
             factors += F;
-            light += F * imageLoad(lights_image, ivec2(k, 2)).rgb;
+            light += F * FETCH(lights_image, ivec2(k, 2)).rgb;
         }
         light *= params.strength * min(1.0, 1.0 / max(factors, 1e-20));
     }

@@ -4,7 +4,7 @@
 // its highest, its back included, which lies `thickness` behind its front on the view ray. The run that starts at the receiver
 // itself blocks all between its highest point and the tangent: its highest share is 1 from the start.
 
-layout(rg32ui, binding = 6) readonly uniform uimage2D surface_image; // surface.comp
+UPICTURE(rg32ui, surface_image); // surface.comp
 
 // Without a radius a run is believed beyond the frame for this share of what is seen of it. Bent ground that no plane stands for
 // sends its light from wherever the tangent leads.
@@ -60,7 +60,7 @@ void finish(inout Sectors slots, Side s, Walk k, Run r, bool ends, bool now) {
 // Takes the sample at distance `at`, `before` the one before.
 void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at, float before) {
     ivec2 q = ivec2(k.line.origin + at * k.line.direction);
-    uvec2 stored_texel = imageLoad(surface_image, q).xy;
+    uvec2 stored_texel = FETCH_INSIDE(surface_image, q, uvec4(0u)).xy;
     float depth = uintBitsToFloat(stored_texel.x), scale = is_orthographic() ? 1.0 : depth;
     bool surface = depth != 0.0;
     vec3 Q = position_of(q, depth), n = unpack_normal(stored_texel.y), gap = Q - run.point, to = Q - P;
@@ -106,7 +106,7 @@ void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at,
 void go_on(inout Sectors slots, inout Run run, Side s, Walk k, float at) {
     ivec2 q = ivec2(k.line.origin + at * k.line.direction);
     vec3 n = normal_at(q);
-    bool on_plane = (imageLoad(surface_image, q).y >> 31u) == 1u;
+    bool on_plane = (FETCH_INSIDE(surface_image, q, uvec4(0u)).y >> 31u) == 1u;
     vec2 facing = vec2(dot(n, s.tangent), dot(n, s.up)) + vec2(0.0, 1e-20);
     vec2 e = vec2(facing.y, -facing.x) * inversesqrt(dot(facing, facing)), ray = away(s, run.last, 1.0);
     if (e.x * ray.y - e.y * ray.x > 0.0) e = -e; // outwards: away from the view ray, clockwise from V

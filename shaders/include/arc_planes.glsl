@@ -3,8 +3,7 @@
 //   hit inside the frame:  it must lie behind the surface recorded there, and inside the plane's support
 //   hit outside the frame: where the slice's line leaves the frame, the plane must lie at the recorded surface or behind it
 
-#include "include/arc_plane.glsl"
-layout(rgba32f, binding = 7) readonly uniform image2D planes_image;
+PICTURE(rgba32f, planes_image);
 
 const int CHORDS = 6; // directions tested of the arc that a plane could block
 const float BELIEVED_PLANE = 1.5; // beyond the frame a plane is believed up to here, in half widths of its support
@@ -21,7 +20,7 @@ struct Border { vec2 ray; float recorded; };
 
 Border border_of(Line line) {
     ivec2 q = ivec2(line.origin + line.border * line.direction);
-    return Border(ray_at(vec2(q) + 0.5).xy, imageLoad(depth_image, q).r);
+    return Border(ray_at(vec2(q) + 0.5).xy, FETCH_INSIDE(depth_image, q, vec4(0.0)).r);
 }
 
 // Whether a plane may go on beyond the frame there.
@@ -37,19 +36,19 @@ bool stands(int plane, vec3 X, vec2 here, bool beyond_frame, float room) {
     // Compared before they become integers, which hold no screen coordinate of a point near the eye.
     bool inside = X.z > 0.0 && all(greaterThanEqual(screen, vec2(0.0))) && all(lessThan(screen, vec2(frame_size)));
     ivec2 q = ivec2(inside ? screen : vec2(0.0)), cell = ivec2(clamp(here * 8.0 + 8.0, 0.0, 15.0));
-    vec4 rows = imageLoad(planes_image, ivec2(PLANE_CELLS + (cell.y >> 2), plane));
+    vec4 rows = FETCH(planes_image, ivec2(PLANE_MASK + (cell.y >> 2), plane));
     uint row = uint((cell.y & 2) == 0 ? ((cell.y & 1) == 0 ? rows.x : rows.y) : ((cell.y & 1) == 0 ? rows.z : rows.w));
     bool supported = max(abs(here.x), abs(here.y)) <= 1.0 && ((row >> cell.x) & 1u) == 1u;
-    bool behind = hidden(imageLoad(depth_image, q).r, X.z, room);
+    bool behind = hidden(FETCH(depth_image, q).r, X.z, room);
     return inside ? supported && behind : beyond_frame && max(abs(here.x), abs(here.y)) <= BELIEVED_PLANE;
 }
 
 void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, Lines lines, vec3 P, float place, float jitter) {
     Border right = border_of(lines.right), left = border_of(lines.left);
     for (int i = 0; i < params.planes; i++) {
-        vec4 equation = imageLoad(planes_image, ivec2(PLANE_EQUATION, i));
-        vec4 u = imageLoad(planes_image, ivec2(PLANE_U, i)), v = imageLoad(planes_image, ivec2(PLANE_V, i));
-        float off = imageLoad(planes_image, ivec2(PLANE_LIGHT, i)).w, room = 2.0 * abs(off);
+        vec4 equation = FETCH(planes_image, ivec2(PLANE_EQUATION, i));
+        vec4 u = FETCH(planes_image, ivec2(PLANE_U, i)), v = FETCH(planes_image, ivec2(PLANE_V, i));
+        float off = FETCH(planes_image, ivec2(PLANE_LIGHT, i)).w, room = 2.0 * abs(off);
         bool uneven = off < 0.0;
         float least = room * (uneven ? UNEVEN_LEAST : 1.0) * (is_orthographic() ? 1.0 : P.z);
         // Distance to the plane along direction t: height / (normal . (cos t, sin t)), least at t0.
@@ -69,7 +68,7 @@ void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, 
         int chords = width > 0.0 && height > least && !(uneven && h > 0.0) ? CHORDS : 0;
         bool goes_right = allows(right, equation, room), goes_left = allows(left, equation, room);
 #ifdef BOUNCE
-        vec3 sent = h < 0.0 ? imageLoad(planes_image, ivec2(PLANE_LIGHT, i)).rgb : vec3(0.0); // from the side that the camera sees
+        vec3 sent = h < 0.0 ? FETCH(planes_image, ivec2(PLANE_LIGHT, i)).rgb : vec3(0.0); // from the side that the camera sees
 #else
         vec3 sent = vec3(0.0);
 #endif

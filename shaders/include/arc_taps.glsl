@@ -6,7 +6,7 @@ void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, float step_ji
         float at = step_distance(i, step_jitter, limit);
         if (at > limit) break;
         ivec2 q = ivec2(floor(line.origin + at * line.direction));
-        float depth = imageLoad(depth_image, q).r;
+        float depth = FETCH_INSIDE(depth_image, q, vec4(0.0)).r;
         vec3 to = position_of(q, depth) - P;
         bool counts = depth != 0.0 && dot(to, to) < params.radius * params.radius;
         vec2 w = in_slice(s, to);

@@ -10,7 +10,7 @@ struct Choice {
     uint other;
     float density;
 };
-layout(std430, binding = 6) readonly buffer Choices { Choice choices[]; };
+layout(std430) readonly buffer Choices { Choice choices[]; };
 
 bool has_choices() { return params.choices.x > 0; }
 

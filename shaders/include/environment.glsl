@@ -1,6 +1,6 @@
 // Looking up the environment map. Map space: u = 0.5 - atan(y, x) / 2pi, v = acos(z) / pi from the top (src/light/environment.h).
 
-layout(binding = 0) uniform sampler2D environment_map;
+uniform sampler2D environment_map;
 
 const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722); // of linear Rec. 709
 

@@ -1,18 +1,16 @@
 // What every pass knows of the frame: camera, size, and the surfaces (depth and normal) of camera space.
 // Camera space: x right, y down, z forward, the eye at the origin (src/gbuffer/camera.h).
 
+#include "include/constants.glsl"
+#include "include/images.glsl"
+#include "include/params.glsl"
+
 #ifndef FRAGMENT
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = GROUP_SIDE, local_size_y = GROUP_SIDE) in;
 layout(location = 0) uniform ivec4 tile; // x0 y0 x1 y1, end exclusive
 #endif
 
-layout(std140, binding = 0) uniform Frame {
-    vec4 lens;          // fx fy cx cy: focal length and principal point in pixels (orthographic: pixels per scene unit)
-    ivec4 size;         // width, height, unused, unused
-    vec4 map_from_camera[3]; // rows of the rotation from camera space to the environment map's space
-    vec4 env;           // level count - 1, width, height of the map, 1 if it is constant
-    vec4 sh[9];         // rgb: plain radiance coefficients in map space
-} frame;
+#include "params/frame.glsl"
 // Copies made before main, number by number: llvmpipe reads a uniform inside any control flow once for every lane.
 vec4 frame_lens = vec4(frame.lens.x, frame.lens.y, frame.lens.z, frame.lens.w);
 vec2 pixel_slope = 1.0 / frame_lens.xy; // of a ray's xy, per pixel
@@ -22,13 +20,13 @@ mat3 camera_from_map = mat3(vec3(frame.map_from_camera[0].x, frame.map_from_came
                             vec3(frame.map_from_camera[1].x, frame.map_from_camera[1].y, frame.map_from_camera[1].z),
                             vec3(frame.map_from_camera[2].x, frame.map_from_camera[2].y, frame.map_from_camera[2].z));
 
-layout(r32f, binding = 0) readonly uniform image2D depth_image;
-layout(rgba32f, binding = 1) readonly uniform image2D normal_image;
+PICTURE(r32f, depth_image);
+PICTURE(rgba32f, normal_image);
 
 const float PI = 3.14159265358979;
 const float ULP = 1.1920929e-7; // of 1.0 in float
 
-#ifdef FRAGMENT // a .frag shader: what is drawn is the tile
+#ifdef FRAGMENT // what is drawn is the tile
 ivec2 this_pixel() { return ivec2(gl_FragCoord.xy); }
 #else
 ivec2 this_pixel() { return tile.xy + ivec2(gl_GlobalInvocationID.xy); }
@@ -42,9 +40,12 @@ bool is_orthographic() { return true; }
 bool is_orthographic() { return false; }
 #endif
 
+// part / whole, and 1 where they are equal: GL lets a division be wrong by two units in the last place, so that x / x need not be 1.
+float ratio(float part, float whole) { return part == whole ? 1.0 : part / whole; }
+
 // Planar depth; 0 where there is no surface or outside the frame.
-float depth_at(ivec2 p) { return in_frame(p) ? imageLoad(depth_image, p).r : 0.0; }
-vec3 normal_at(ivec2 p) { return imageLoad(normal_image, p).xyz; }
+float depth_at(ivec2 p) { return in_frame(p) ? FETCH(depth_image, p).r : 0.0; }
+vec3 normal_at(ivec2 p) { return FETCH(normal_image, p).xyz; }
 
 // Direction of a screen point's ray with z = 1 (perspective).
 vec3 ray_at(vec2 screen) { return vec3((screen - frame_lens.zw) * pixel_slope, 1.0); }

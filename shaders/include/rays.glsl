@@ -11,9 +11,3 @@ struct Hit {
 struct Triangle { // a corner and the edges from it; w: albedo r, g, b
     vec4 corner, edge1, edge2;
 };
-
-const float FAR = 1e30; // src/plugin/trace_abi.h
-const uint MISS = 0xffffffffu;
-const uint NO_RAY = 0xfffffffeu;
-
-layout(std430, binding = 3) readonly buffer Triangles { Triangle triangles[]; };

@@ -2,16 +2,7 @@
 // shared by the direct pass and the bounce so that both see the same blocked samples.
 #include "include/recorded.glsl"
 
-layout(std140, binding = 1) uniform Params {
-    float radius;    // R, scene units
-    float thickness; // scene units; huge = infinite
-    int samples;     // N directions, one point each
-    int seed;
-    float level;     // environment level; negative: by solid angle
-    float strength;  // of the bounce
-    int exitant;     // senders hold exitant radiance (a beauty), not light before albedo
-    int unused;
-} params;
+#include "params/ssdo.glsl"
 
 struct Sample {
     vec3 direction; // unit, camera space

@@ -6,22 +6,9 @@
 // near its middle; directions are chosen in camera space.
 #include "include/rays.glsl"
 
-layout(std140, binding = 1) uniform Params {
-    vec4 mesh_from_camera[3]; // rows of the rotation; w: the offset
-    float radius;             // of the occlusion
-    float level;              // environment level
-    float strength;           // of the bounce
-    int seed;
-    int sample_index;
-    int samples; // of all rounds
-    int unused0, unused1;
-    ivec4 choices; // width, height of the environment's table
-} params;
+#include "params/trace.glsl"
 
-layout(std430, binding = 7) readonly buffer Pixels { uint pixels[]; }; // y * width + x of the frame's surfaces
-
-layout(rgba32f, binding = 2) uniform image2D point_image; // mesh space; w: how far rays are lifted
-layout(rgba32f, binding = 3) uniform image2D face_image;  // the surface's own normal, towards the eye; w: 1 if the mesh is there
+layout(std430) readonly buffer Pixels { uint pixels[]; }; // y * width + x of the frame's surfaces
 
 // tile: x the batch's first pixel in the list, y its end. Item i is pixel tile.x + i; batches are padded to whole work groups.
 uint this_item() { return gl_WorkGroupID.x * 64u + gl_LocalInvocationIndex; }

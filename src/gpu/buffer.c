@@ -36,8 +36,3 @@ void gpu_buffer_read(gpu *g, const gpu_buffer *buffer, void *data, size_t size)
     gpu_barrier(g, GL_BUFFER_UPDATE_BARRIER_BIT);
     glGetNamedBufferSubData(buffer->id, 0, (GLsizeiptr)size, data);
 }
-
-void gpu_bind_buffer(int binding, const gpu_buffer *buffer)
-{
-    if (buffer->id) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, (GLuint)binding, buffer->id);
-}

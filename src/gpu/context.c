@@ -60,6 +60,20 @@ static EGLContext make_context(EGLDisplay display, bool *robust)
     return NULL;
 }
 
+static void query_limits(gpu_limits *l)
+{
+    GLint compute = 0, fragment = 0;
+    GLint64 bytes = 0;
+    glGetIntegerv(GL_MAX_IMAGE_UNITS, &l->image_units);
+    glGetIntegerv(GL_MAX_COMPUTE_IMAGE_UNIFORMS, &compute);
+    glGetIntegerv(GL_MAX_FRAGMENT_IMAGE_UNIFORMS, &fragment);
+    glGetIntegerv(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, &l->storage_blocks);
+    glGetIntegerv(GL_MAX_COMBINED_SHADER_OUTPUT_RESOURCES, &l->outputs);
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
+    l->images = compute < fragment ? compute : fragment;
+    l->storage_bytes = bytes;
+}
+
 static bool try_display(gpu *g, EGLDisplay display, const char *platform)
 {
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, NULL, NULL)) return false;
@@ -82,6 +96,8 @@ static bool try_display(gpu *g, EGLDisplay display, const char *platform)
     g->band_bytes = GPU_BAND_BYTES;
     g->threads = 1;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &g->max_size);
+    query_limits(&g->limits);
+    g->habits = gpu_choose_habits(g->software, &g->limits, getenv("SSDO_READ"), getenv("SSDO_DRAW"));
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     return true;

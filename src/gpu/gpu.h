@@ -11,8 +11,9 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "gpu/habits.h"
 
-typedef struct gpu_program_entry gpu_program_entry;
+typedef struct gpu_program gpu_program;
 typedef struct gpu_pixel_buffer gpu_pixel_buffer; // gpu/transfer.h
 
 // What was asked of GL. Uniform blocks, of a few hundred bytes, are not counted.
@@ -38,7 +39,9 @@ typedef struct gpu {
     int threads;       // that copy what is sent up
     gpu_pixel_buffer *down, *up[GPU_UP_BUFFERS];
     int next_up;
-    gpu_program_entry *programs;
+    gpu_habits habits;
+    gpu_limits limits;
+    gpu_program **programs; // owned
     int program_count;
     int programs_compiled, programs_cached; // of program_count: made from source, or taken from the cache of an earlier run
     gpu_counts counts;                      // since the context was opened
@@ -66,11 +69,37 @@ int gpu_list_devices(gpu_device *list, int max);
 const char *gpu_missing_device(void);
 
 // ---- programs
-// ------------------------------------------------------------------------------------------------------------------- The compute
-// program of shaders/<name> (or, for a name in ".frag", the program that draws with it; FRAGMENT is then defined) with "#define"s
-// put before it ("LIGHT 1\nSAMPLES 4\n": one a line, without the word). Compiled once per name and defines, kept until gpu_close.
-// 0 on failure; the message names the file and line of the source.
-GLuint gpu_program(gpu *g, const char *name, const char *defines, error *e);
+// ---------------------------------------------------------------------------------------------------------------------
+typedef enum gpu_slot_kind { SLOT_TEXTURE, SLOT_IMAGE, SLOT_BUFFER, SLOT_OUTPUT } gpu_slot_kind;
+
+// Where a program takes a picture (as texture or as image), a storage buffer, or draws an output, by the name it has in the
+// shader.
+typedef struct gpu_slot {
+    char name[32];
+    gpu_slot_kind kind;
+    int unit; // texture unit, image unit, buffer binding or location
+} gpu_slot;
+
+enum { GPU_MAX_SLOTS = 24 };
+
+struct gpu_program {
+    char *key; // file, form and defines
+    GLuint id;
+    bool drawn;
+    gpu_slot slots[GPU_MAX_SLOTS];
+    int slot_count;
+};
+
+// The program of shaders/<name> with "#define"s put before it ("LIGHT 1\nSAMPLES 4\n": one a line, without the word): a compute
+// program, or if `drawn` the program that draws with it (FRAGMENT is then defined). Compiled once per name, form and defines,
+// kept until gpu_close. NULL on failure; the message names the file and line of the source.
+const gpu_program *gpu_program_get(gpu *g, const char *name, const char *defines, bool drawn, error *e);
+
+// The text that the driver gets for it, to be freed. Needs no context; for tests and tools.
+char *gpu_program_source(gpu_habits habits, const char *name, const char *defines, bool drawn, error *e);
+
+// NULL: the program does not use it.
+const gpu_slot *gpu_slot_of(const gpu_program *p, const char *name);
 
 // ---- images
 // ---------------------------------------------------------------------------------------------------------------------
@@ -88,8 +117,8 @@ void gpu_image_download(gpu *g, const gpu_image *image, float *pixels);
 // Rows y .. y + rows - 1, of at most 1 GiB.
 void gpu_image_download_rows(gpu *g, const gpu_image *image, int y, int rows, float *pixels);
 void gpu_image_clear(gpu_image *image, const float value[4]);
-// Binds as image unit `unit` for reading, writing or both. An image with id 0 is skipped.
-void gpu_bind_image(int unit, const gpu_image *image, GLenum access);
+// Puts the image's level 0 into a slot for pictures. For a texture, id 0 binds nothing; for an image it is skipped.
+void gpu_bind_picture(const gpu_slot *slot, const gpu_image *image);
 
 // ---- uniform buffers
 // ------------------------------------------------------------------------------------------------------------
@@ -109,8 +138,8 @@ bool gpu_buffer_make(gpu *g, gpu_buffer *buffer, const void *data, size_t size, 
 void gpu_buffer_free(gpu_buffer *buffer);
 void gpu_buffer_write(gpu *g, gpu_buffer *buffer, const void *data, size_t size); // from its beginning
 void gpu_buffer_read(gpu *g, const gpu_buffer *buffer, void *data, size_t size);  // waits for the shaders that write it
-// Binds as shader storage. A buffer with id 0 is skipped.
-void gpu_bind_buffer(int binding, const gpu_buffer *buffer);
+// Puts it into a slot for buffers. A buffer with id 0 is skipped.
+void gpu_bind_buffer(const gpu_slot *slot, const gpu_buffer *buffer);
 
 // What was counted since `before`, a copy of g->counts.
 gpu_counts gpu_counts_since(const gpu *g, const gpu_counts *before);
@@ -136,7 +165,7 @@ typedef struct gpu_tiles {
     const volatile int *stop; // borrowed, may be NULL: once it is not zero, no further tile is dispatched
 } gpu_tiles;
 
-enum { GPU_GROUP = 8, GPU_TILE = 64 }; // a work group is GPU_GROUP^2 pixels
+enum { GPU_TILE = 64 };
 
 // A side that suits the device: GPU_TILE for a software renderer, which gains from tiles left out and where a dispatch costs
 // nothing; for hardware one that keeps a dispatch of so many samples a pixel short. For tests the environment variable SSDO_TILE
@@ -153,7 +182,11 @@ void gpu_tiles_free(gpu_tiles *t);
 // (ivec4: x0 y0 x1 y1, end exclusive), with the memory barriers that image reads of the next pass need.
 void gpu_dispatch_tiles(gpu *g, const gpu_tiles *t, bool everywhere);
 
-// The same for a .frag program: draws the tiles into the targets, all of the tiles' size; target i is the shader's output at
+// So many work groups of the program in use, for what is no picture; unless `end` is 0, uniform location 0 holds (first, end, 0,
+// 0).
+void gpu_dispatch_groups(gpu *g, int columns, int rows, int first, int end);
+
+// The same for a drawn program: draws the tiles into the targets, all of the tiles' size; target i is the shader's output at
 // location i. For passes that do little for each pixel: a software renderer stores what is drawn four times faster than what a
 // compute shader puts into an image, where every pixel's store is a branch of its own (llvmpipe, 1080p, RGBA32F + R32F copied:
 // 31 against 94 ms). What is drawn is in order with image reads that follow. llvmpipe flushes denormal floats to zero here and

@@ -100,11 +100,6 @@ void gpu_image_clear(gpu_image *image, const float value[4])
                     integer ? (const void *)whole : value);
 }
 
-void gpu_bind_image(int unit, const gpu_image *image, GLenum access)
-{
-    if (image->id) glBindImageTexture((GLuint)unit, image->id, 0, GL_FALSE, 0, access, image->format);
-}
-
 GLuint gpu_uniforms_make(size_t size)
 {
     GLuint buffer = 0;

@@ -11,4 +11,7 @@ size_t gpu_image_row_bytes(const gpu_image *image); // as floats
 // Rows of level 0; with a buffer bound to GL_PIXEL_UNPACK_BUFFER, `pixels` is NULL.
 void gpu_image_upload_rows(gpu *g, gpu_image *image, int y, int rows, const float *pixels);
 
+// Gives units to all that a linked program uses and lists them in its slots. False: more than GPU_MAX_SLOTS.
+bool gpu_find_slots(gpu_program *p);
+
 #endif

@@ -9,11 +9,6 @@
 #include "gpu/internal.h"
 #include "gpu/shaders.h"
 
-struct gpu_program_entry {
-    char *key; // name and defines
-    GLuint id;
-};
-
 enum { MAX_SOURCES = 24 };
 
 // A growing text, and the files it was spliced from: GLSL's "#line n file" carries an index into `files`.
@@ -61,12 +56,6 @@ static const char *source_of(splice *s, const char *name, error *e)
     return NULL;
 }
 
-static bool is_fragment(const char *name)
-{
-    size_t n = strlen(name);
-    return n > 5 && strcmp(name + n - 5, ".frag") == 0;
-}
-
 // Splices the file's lines, following #include "..." once per file. A first line "#version" goes before the defines.
 static bool splice_file(splice *s, const char *name, const char *defines, error *e)
 {
@@ -100,7 +89,6 @@ static bool splice_file(splice *s, const char *name, const char *defines, error 
                 if (m && (!append(s, "#define ", 8, e) || !append(s, d, m, e) || !append(s, "\n", 1, e))) return false;
                 d += m + (d[m] == '\n');
             }
-            if (is_fragment(name) && !append(s, "#define FRAGMENT 1\n", 19, e)) return false;
             if (!append(s, "#line 2 0\n", 10, e)) return false;
         }
         p += n;
@@ -128,13 +116,13 @@ static bool attach(GLuint program, GLenum kind, const char *text, char *message,
     return ok;
 }
 
-static GLuint compile(const splice *s, const char *name, error *e)
+static GLuint compile(const splice *s, const char *name, bool drawn, error *e)
 {
     GLuint program = glCreateProgram();
     char message[400] = "";
-    GLint ok = is_fragment(name) ? attach(program, GL_VERTEX_SHADER, vertex_text, message, sizeof message) &&
-                                       attach(program, GL_FRAGMENT_SHADER, s->text, message, sizeof message)
-                                 : attach(program, GL_COMPUTE_SHADER, s->text, message, sizeof message);
+    GLint ok = drawn ? attach(program, GL_VERTEX_SHADER, vertex_text, message, sizeof message) &&
+                           attach(program, GL_FRAGMENT_SHADER, s->text, message, sizeof message)
+                     : attach(program, GL_COMPUTE_SHADER, s->text, message, sizeof message);
     if (ok) {
         glProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
         glLinkProgram(program);
@@ -151,7 +139,7 @@ static GLuint compile(const splice *s, const char *name, error *e)
 }
 
 // From the cache, else compiled and put there.
-static GLuint fetch(gpu *g, const splice *s, const char *name, error *e)
+static GLuint fetch(gpu *g, const splice *s, const char *name, bool drawn, error *e)
 {
     GLuint program = glCreateProgram();
     if (cache_load(g, s->text, program)) {
@@ -159,45 +147,82 @@ static GLuint fetch(gpu *g, const splice *s, const char *name, error *e)
         return program;
     }
     glDeleteProgram(program);
-    program = compile(s, name, e);
+    program = compile(s, name, drawn, e);
     if (!program) return 0;
     g->programs_compiled++;
     cache_store(g, s->text, program);
     return program;
 }
 
-GLuint gpu_program(gpu *g, const char *name, const char *defines, error *e)
+static void free_splice(splice *s)
+{
+    for (int i = 0; i < s->file_count; i++) {
+        free(s->loaded[i]);
+        if (i > 0) free((char *)s->files[i]);
+    }
+    free(s->text);
+    *s = (splice){0};
+}
+
+// The file with its includes, after the defines of the caller, the form and the device's habits.
+static bool splice_program(splice *s, gpu_habits habits, const char *name, const char *defines, bool drawn, error *e)
+{
+    char all[768];
+    int n = snprintf(all, sizeof all, "%s%s%s", habits.read_images ? "READ_IMAGES 1\n" : "", drawn ? "FRAGMENT 1\n" : "",
+                     defines ? defines : "");
+    if (n < 0 || (size_t)n >= sizeof all) return err_set(e, ERR_GL, name, NULL, "this shader has too many defines");
+    return splice_file(s, name, all, e);
+}
+
+char *gpu_program_source(gpu_habits habits, const char *name, const char *defines, bool drawn, error *e)
+{
+    splice s = {0};
+    char *text = splice_program(&s, habits, name, defines, drawn, e) ? s.text : NULL;
+    if (text) s.text = NULL;
+    free_splice(&s);
+    return text;
+}
+
+static void free_program(gpu_program *p)
+{
+    if (!p) return;
+    if (p->id) glDeleteProgram(p->id);
+    free(p->key);
+    free(p);
+}
+
+static gpu_program *make_program(gpu *g, const char *key, const char *name, const char *defines, bool drawn, error *e)
+{
+    splice s = {0};
+    gpu_program *p = mem_zero(1, sizeof *p, e);
+    bool ok = p && (p->key = mem_string(key, e)) && splice_program(&s, g->habits, name, defines, drawn, e) &&
+              (p->id = fetch(g, &s, name, drawn, e)) != 0;
+    free_splice(&s);
+    if (ok) p->drawn = drawn;
+    if (ok && !gpu_find_slots(p))
+        ok = err_set(e, ERR_GL, name, NULL, "this shader uses more than %d pictures, buffers and outputs", GPU_MAX_SLOTS);
+    if (ok) return p;
+    free_program(p);
+    return NULL;
+}
+
+const gpu_program *gpu_program_get(gpu *g, const char *name, const char *defines, bool drawn, error *e)
 {
     char key[512];
-    snprintf(key, sizeof key, "%s\n%s", name, defines ? defines : "");
+    snprintf(key, sizeof key, "%s%s\n%s", drawn ? "drawn " : "", name, defines ? defines : "");
     for (int i = 0; i < g->program_count; i++)
-        if (strcmp(g->programs[i].key, key) == 0) return g->programs[i].id;
-    splice s = {0};
-    GLuint id = splice_file(&s, name, defines ? defines : "", e) ? fetch(g, &s, name, e) : 0;
-    for (int i = 0; i < s.file_count; i++) {
-        free(s.loaded[i]);
-        if (i > 0) free((char *)s.files[i]);
-    }
-    free(s.text);
-    if (!id) return 0;
-    gpu_program_entry *grown = mem_grow(g->programs, (size_t)g->program_count + 1, sizeof *grown, e);
-    char *kept = mem_string(key, e);
-    if (grown) g->programs = grown;
-    if (!grown || !kept) {
-        free(kept);
-        glDeleteProgram(id);
-        return 0;
-    }
-    g->programs[g->program_count++] = (gpu_program_entry){kept, id};
-    return id;
+        if (strcmp(g->programs[i]->key, key) == 0) return g->programs[i];
+    gpu_program **grown = mem_grow(g->programs, (size_t)g->program_count + 1, sizeof *grown, e);
+    if (!grown) return NULL;
+    g->programs = grown;
+    gpu_program *p = make_program(g, key, name, defines, drawn, e);
+    if (p) g->programs[g->program_count++] = p;
+    return p;
 }
 
 void gpu_programs_free(gpu *g)
 {
-    for (int i = 0; i < g->program_count; i++) {
-        glDeleteProgram(g->programs[i].id);
-        free(g->programs[i].key);
-    }
+    for (int i = 0; i < g->program_count; i++) free_program(g->programs[i]);
     free(g->programs);
     g->programs = NULL;
     g->program_count = 0;

@@ -1,5 +1,6 @@
 #include <stdlib.h>
 
+#include "../shaders/include/constants.glsl"
 #include "base/mem.h"
 #include "gpu/gpu.h"
 
@@ -102,9 +103,18 @@ void gpu_dispatch_tiles(gpu *g, const gpu_tiles *t, bool everywhere)
             int x0 = column * t->size, y0 = row * t->size;
             int x1 = x0 + t->size < t->width ? x0 + t->size : t->width, y1 = y0 + t->size < t->height ? y0 + t->size : t->height;
             glUniform4i(0, x0, y0, x1, y1);
-            gpu_dispatch(g, (GLuint)(x1 - x0 + GPU_GROUP - 1) / GPU_GROUP, (GLuint)(y1 - y0 + GPU_GROUP - 1) / GPU_GROUP, 1);
+            gpu_dispatch(g, (GLuint)(x1 - x0 + GROUP_SIDE - 1) / GROUP_SIDE, (GLuint)(y1 - y0 + GROUP_SIDE - 1) / GROUP_SIDE, 1);
         }
-    gpu_barrier(g, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+    gpu_barrier(g, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT |
+                    GL_FRAMEBUFFER_BARRIER_BIT);
+}
+
+void gpu_dispatch_groups(gpu *g, int columns, int rows, int first, int end)
+{
+    if (end > first) glUniform4i(0, first, end, 0, 0);
+    gpu_dispatch(g, (GLuint)columns, (GLuint)(rows > 0 ? rows : 1), 1);
+    gpu_barrier(g, GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                    GL_TEXTURE_UPDATE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
 }
 
 // Tiles side by side go into one draw, but not many: one draw should stay short.

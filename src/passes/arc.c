@@ -1,7 +1,6 @@
 #include "passes/arc.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static const float HUGE_LENGTH = 1e15f; // its square is still a float
@@ -68,17 +67,16 @@ arc_params arc_unlimited_params_of(const pass_context *c)
 
 // ---- planes
 
-// Columns of the planes' image: shaders/include/arc_plane.glsl.
-enum { EQUATION, AXIS_U, AXIS_V, LIGHT, CELLS, COLUMNS = CELLS + PLANE_CELLS / 4 };
+_Static_assert(PLANE_COLUMNS == PLANE_MASK + PLANE_CELLS / 4 && MAX_SUNS == SUNS_MAX, "shaders/include/constants.glsl");
 
 void arc_put(float to[4], vec3 a, double w) { to[0] = (float)a.x, to[1] = (float)a.y, to[2] = (float)a.z, to[3] = (float)w; }
 
-static void put_plane(float row[COLUMNS][4], const plane *p, bool uneven)
+static void put_plane(float row[PLANE_COLUMNS][4], const plane *p, bool uneven)
 {
-    arc_put(row[EQUATION], p->normal, p->offset);
-    for (int i = 0; i < 2; i++) arc_put(row[AXIS_U + i], v3_scale(p->axis[i], 1.0 / p->half[i]), p->centre[i] / p->half[i]);
-    arc_put(row[LIGHT], v3(0, 0, 0), uneven ? -p->room : p->room);
-    for (int y = 0; y < PLANE_CELLS; y++) row[CELLS + y / 4][y % 4] = (float)p->cells[y];
+    arc_put(row[PLANE_EQUATION], p->normal, p->offset);
+    for (int i = 0; i < 2; i++) arc_put(row[PLANE_U + i], v3_scale(p->axis[i], 1.0 / p->half[i]), p->centre[i] / p->half[i]);
+    arc_put(row[PLANE_LIGHT], v3(0, 0, 0), uneven ? -p->room : p->room);
+    for (int y = 0; y < PLANE_CELLS; y++) row[PLANE_MASK + y / 4][y % 4] = (float)p->cells[y];
 }
 
 // Finds the planes, once a frame, and puts them where the shader reads them.
@@ -86,13 +84,13 @@ static bool make_planes(pass_context *c, error *e)
 {
     if (!c->set.planes || c->plane_image.id) return true;
     if (!c->planes.found && !planes_find(c->gb, &c->planes, e)) return false;
-    float rows[PLANES_MAX + 1][COLUMNS][4] = {0};
+    float rows[PLANES_MAX + 1][PLANE_COLUMNS][4] = {0};
     for (int i = 0; i < c->planes.count + c->planes.uneven; i++) put_plane(rows[i], &c->planes.planes[i], i == c->planes.count);
     for (int i = 0; i < c->planes.count + c->planes.uneven; i++)
         log_info(c->log, "%s %d: %.1f %% of the surfaces, %.3g x %.3g scene units",
                  i == c->planes.count ? "uneven ground, as plane" : "plane", i + 1, 100.0 * c->planes.planes[i].share,
                  2.0 * c->planes.planes[i].half[0], 2.0 * c->planes.planes[i].half[1]);
-    if (!gpu_image_make(c->g, &c->plane_image, GL_RGBA32F, COLUMNS, PLANES_MAX + 1, 1, e)) return false;
+    if (!gpu_image_make(c->g, &c->plane_image, GL_RGBA32F, PLANE_COLUMNS, PLANES_MAX + 1, 1, e)) return false;
     gpu_image_upload(c->g, &c->plane_image, 0, rows[0][0]);
     return true;
 }
@@ -120,77 +118,84 @@ static bool make_sunless(pass_context *c, error *e)
 
 // ---- the passes
 
-// `defines`, and PLANES if there are any.
-const char *arc_with_planes(const pass_context *c, const char *defines, char *buf, size_t size)
+variant arc_variant(const pass_context *c, const char *what)
 {
-    snprintf(buf, size, "%s%s", defines, c->planes.count + c->planes.uneven ? "PLANES 1\n" : "");
-    return buf;
+    variant v = {{0}};
+    variant_add(&v, *what != 0, what);
+    variant_add(&v, c->planes.count + c->planes.uneven > 0, "PLANES");
+    return v;
 }
 
 static bool make_surface(pass_context *c, error *e)
 {
     if (c->surface.id) return true;
-    arc_params params = arc_params_of(c);
-    char buf[128];
-    const pass_binding bindings[] = {{2, &c->surface, GL_WRITE_ONLY}, {7, &c->plane_image, GL_READ_ONLY}};
-    return pass_make(c, &c->surface, GL_RG32UI, 0.0f, e) &&
-           pass_run(c, "surface", arc_with_planes(c, "", buf, sizeof buf), &params, sizeof params, bindings, 2, false, e);
+    const arc_params params = arc_params_of(c);
+    const variant v = arc_variant(c, "");
+    const pass_call call = {
+        .program = "surface",
+        .variant = v.words,
+        PASS_PARAMS(params),
+        .reads = {{"planes_image", &c->plane_image}},
+        .writes = {{"surface_image", &c->surface}},
+    };
+    return pass_make(c, &c->surface, GL_RG32UI, 0.0f, e) && pass_run(c, &call, e);
 }
 
 bool arc_make_inputs(pass_context *c, error *e) { return make_planes(c, e) && make_surface(c, e); }
 
 // Bent normals after rounds have found the occlusion: as many slices, whose own occlusion nobody needs.
-static bool run_bent(pass_context *c, const char *defines, error *e)
+static bool run_bent(pass_context *c, const char *what, error *e)
 {
-    arc_params params = arc_params_of_grid(c, ROUND_SLICES, ROUND_STEPS);
-    char with_bent[64], buf[128];
+    const arc_params params = arc_params_of_grid(c, ROUND_SLICES, ROUND_STEPS);
+    variant v = arc_variant(c, what);
     gpu_image unused = {0};
-    snprintf(with_bent, sizeof with_bent, "%sBENT 1\n", defines);
-    const pass_binding bindings[] = {{2, &unused, GL_WRITE_ONLY},
-                                     {3, &c->bent, GL_WRITE_ONLY},
-                                     {6, &c->surface, GL_READ_ONLY},
-                                     {7, &c->plane_image, GL_READ_ONLY}};
+    variant_add(&v, true, "BENT");
+    const pass_call call = {
+        .program = "arc",
+        .label = "arc bent",
+        .variant = v.words,
+        .reads = {{"surface_image", &c->surface}, {"planes_image", &c->plane_image}},
+        .writes = {{"scalar_image", &unused}, {"light_image", &c->bent}},
+    };
     bool ok = pass_make(c, &unused, GL_R32F, 1.0f, e) && pass_make(c, &c->bent, GL_RGBA32F, 0.0f, e) &&
-              arc_run_at_rounds(c, "arc bent", arc_with_planes(c, with_bent, buf, sizeof buf), &params, bindings, 4, e);
+              arc_run_at_rounds(c, &call, &params, e);
     gpu_image_free(&unused);
     return ok;
 }
 
-static bool run_occlusion(pass_context *c, const char *defines, error *e)
+static bool run_occlusion(pass_context *c, const char *what, error *e)
 {
-    if (c->set.error > 0.0) return arc_run_rounds(c, defines, e) && (!c->want_bent || run_bent(c, defines, e));
-    arc_params params = arc_params_of(c);
-    char with_bent[64], buf[128];
+    if (c->set.error > 0.0) return arc_run_rounds(c, what, e) && (!c->want_bent || run_bent(c, what, e));
+    const arc_params params = arc_params_of(c);
     bool change = params.slices >= LEAST_FOR_CHANGE && c->set.blur > 0;
-    snprintf(with_bent, sizeof with_bent, "%s%s%s", defines, c->want_bent ? "BENT 1\n" : "", change ? "CHANGE 1\n" : "");
+    variant v = arc_variant(c, what);
+    variant_add(&v, c->want_bent, "BENT");
+    variant_add(&v, change, "CHANGE");
     if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e)) return false;
     if (c->want_bent && !pass_make(c, &c->bent, GL_RGBA32F, 0.0f, e)) return false;
     if (change && !pass_make(c, &c->change, GL_R32F, 0.0f, e)) return false;
-    const pass_binding bindings[] = {{2, &c->occlusion, GL_WRITE_ONLY},
-                                     {3, &c->bent, GL_WRITE_ONLY},
-                                     {4, &c->change, GL_WRITE_ONLY},
-                                     {6, &c->surface, GL_READ_ONLY},
-                                     {7, &c->plane_image, GL_READ_ONLY}};
-    return pass_run(c, "arc", arc_with_planes(c, with_bent, buf, sizeof buf), &params, sizeof params, bindings, 5, false, e);
+    const pass_call call = {
+        .program = "arc",
+        .variant = v.words,
+        PASS_PARAMS(params),
+        .reads = {{"surface_image", &c->surface}, {"planes_image", &c->plane_image}},
+        .writes = {{"scalar_image", &c->occlusion}, {"light_image", &c->bent}, {"change_image", &c->change}},
+    };
+    return pass_run(c, &call, e);
 }
 
 // What the planes send: one work group that reads the whole frame's grid.
 static bool light_planes(pass_context *c, const arc_params *params, const gpu_image *sender, const gpu_image *albedo, error *e)
 {
-    if (c->planes.count + c->planes.uneven == 0) return true;
-    GLuint program = pass_program(c, "plane_light.comp", NULL, e);
-    if (!program) return false;
-    glUseProgram(program);
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, c->frame_uniforms);
-    gpu_uniforms_set(c->params_uniforms, 1, params, sizeof *params);
-    gpu_bind_image(7, &c->plane_image, GL_READ_WRITE);
-    gpu_bind_image(0, &c->depth, GL_READ_ONLY);
-    gpu_bind_image(1, &c->normal, GL_READ_ONLY);
-    gpu_bind_image(4, sender, GL_READ_ONLY);
-    gpu_bind_image(5, albedo, GL_READ_ONLY);
-    gpu_dispatch(c->g, 1, 1, 1);
-    gpu_barrier(c->g, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    return true;
+    const pass_call call = {
+        .program = "plane_light",
+        .untimed = true,
+        .groups = {1, 1},
+        PASS_PARAMS(*params),
+        .reads = {{"sender_image", sender}, {"albedo_image", albedo}},
+        .writes = {{"planes_image", &c->plane_image}},
+    };
+    return c->planes.count + c->planes.uneven == 0 || pass_run(c, &call, e);
 }
 
 // Light comes from any distance, so its march has no radius. It serves the sky's light through what is open and the bounce from
@@ -200,37 +205,40 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
     // A picture the renderer lit is what surfaces send; our own radiance still needs their albedo.
     bool exitant = !c->set.relight, visibility = sky && c->want_visibility;
     const gpu_image *sender = exitant ? &c->beauty : &c->radiance, *albedo = exitant ? &c->beauty : &c->albedo;
-    char defines[96], buf[160];
     arc_params params = arc_unlimited_params_of(c);
     params.exitant = exitant;
     if (sky && (!make_sunless(c, e) || !pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e))) return false;
     if (visibility && !pass_make(c, &c->visibility, GL_R32F, 1.0f, e)) return false;
     if (bounce && (!light_planes(c, &params, sender, albedo, e) || !pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e)))
         return false;
-    gpu_image whole = c->environment;
     if (sky) c->suns_apart = c->sunless->map.id != 0;
-    if (sky && c->suns_apart) c->environment = c->sunless->map;
-    pass_binding bindings[6] = {{6, &c->surface, GL_READ_ONLY}, {7, &c->plane_image, GL_READ_ONLY}};
-    int count = 2;
-    if (visibility) bindings[count++] = (pass_binding){2, &c->visibility, GL_WRITE_ONLY};
-    if (sky) bindings[count++] = (pass_binding){3, &c->radiance, GL_WRITE_ONLY};
-    if (bounce) bindings[count++] = (pass_binding){4, sender, GL_READ_ONLY};
-    if (bounce && !exitant) bindings[count++] = (pass_binding){5, albedo, GL_READ_ONLY};
-    if (bounce) bindings[count++] = (pass_binding){exitant ? 5 : 3, &c->indirect, GL_WRITE_ONLY};
-    snprintf(defines, sizeof defines, "RUNS 1\n%s%s%s%s", sky ? "LIGHT 1\n" : "", visibility ? "VISIBILITY 1\n" : "",
-             bounce ? "BOUNCE 1\n" : "", bounce && exitant ? "EXITANT 1\n" : "");
-    const char *name = sky && bounce ? "arc light+bounce" : sky ? "arc light" : "arc bounce";
-    bool ok = arc_run_at_rounds(c, name, arc_with_planes(c, defines, buf, sizeof buf), &params, bindings, count, e);
-    c->environment = whole;
-    return ok;
+    variant v = arc_variant(c, "RUNS");
+    variant_add(&v, sky, "LIGHT");
+    variant_add(&v, visibility, "VISIBILITY");
+    variant_add(&v, bounce, "BOUNCE");
+    variant_add(&v, bounce && exitant, "EXITANT");
+    const pass_call call = {
+        .program = "arc",
+        .label = sky && bounce ? "arc light+bounce"
+                 : sky         ? "arc light"
+                               : "arc bounce",
+        .variant = v.words,
+        .environment = sky && c->suns_apart ? &c->sunless->map : NULL,
+        .reads = {{"surface_image", &c->surface},
+                  {"planes_image", &c->plane_image},
+                  {"sender_image", sender},
+                  {"albedo_image", albedo}},
+        .writes = {{"scalar_image", &c->visibility}, {"light_image", &c->radiance}, {"indirect_image", &c->indirect}},
+    };
+    return arc_run_at_rounds(c, &call, &params, e);
 }
 
-bool pass_gtao(pass_context *c, error *e) { return run_occlusion(c, "HORIZON 1\n", e); }
-bool pass_bitmask(pass_context *c, error *e) { return run_occlusion(c, "BITMASK 1\n", e); }
+bool pass_gtao(pass_context *c, error *e) { return run_occlusion(c, "HORIZON", e); }
+bool pass_bitmask(pass_context *c, error *e) { return run_occlusion(c, "BITMASK", e); }
 
 bool pass_arc(pass_context *c, error *e)
 {
-    if (!arc_make_inputs(c, e) || !run_occlusion(c, "RUNS 1\n", e)) return false;
+    if (!arc_make_inputs(c, e) || !run_occlusion(c, "RUNS", e)) return false;
     return !(c->want_radiance || c->want_visibility) || run_light(c, true, c->want_indirect, e);
 }
 

@@ -1,19 +1,10 @@
-// What the passes of the `arc` family share: the parameter block of shaders/include/arc_params.glsl.
+// What the passes of the `arc` family share.
 #ifndef SSDO_PASSES_ARC_H
 #define SSDO_PASSES_ARC_H
 
+#include "passes/params.h"
 #include "passes/pass.h"
-
-typedef struct arc_params {
-    float radius, thickness, kappa, thin;
-    int slices, steps, seed, planes;
-    float tolerance, level, strength;
-    int suns, exitant;
-    float inverse_steps;
-    int before, unused;
-    float sun_direction[SUNS_MAX][4], sun_light[SUNS_MAX][4];
-    float box[2][4], rest[9][4];
-} arc_params;
+#include "passes/variants.h"
 
 // Slices and steps a side for a number of samples = slices x 2 x steps.
 void arc_grid(int samples, int *slices, int *steps);
@@ -24,8 +15,8 @@ arc_params arc_unlimited_params_of(const pass_context *c);
 // What all marches read, once a frame: the planes and their image, the packed surfaces.
 bool arc_make_inputs(pass_context *c, error *e);
 
-// `defines`, and PLANES if there are any.
-const char *arc_with_planes(const pass_context *c, const char *defines, char *buf, size_t size);
+// The words `what` and, if the frame has planes that may stand in, PLANES.
+variant arc_variant(const pass_context *c, const char *what);
 
 // The parameters for another grid than that of c->set.samples.
 void arc_set_grid(arc_params *p, int slices, int steps);
@@ -38,13 +29,13 @@ enum { ROUND_SLICES = 2, ROUND_STEPS = 16, ROUNDS_MAX = 12 };
 int arc_round_slices(int round); // in all, after it
 int arc_round_steps(int round);  // a side, of what it adds
 
-// Occlusion, in rounds that double the slices of a tile until its estimated standard error (denoise.frag, root mean square over
-// the tile's surfaces) is below c->set.error or a further round would take more than c->set.most_samples. `defines` names what
+// Occlusion, in rounds that double the slices of a tile until its estimated standard error (denoise.comp, root mean square over
+// the tile's surfaces) is below c->set.error or a further round would take more than c->set.most_samples. `what` names what
 // blocks. Fills c->occlusion, denoised, c->rounds and, if wanted, c->error.
-bool arc_run_rounds(pass_context *c, const char *defines, error *e);
-// pass_run of "arc" (or with a `name` for the report), after rounds with as many slices as each tile came to.
-bool arc_run_at_rounds(pass_context *c, const char *name, const char *defines, const arc_params *params,
-                       const pass_binding *bindings, int binding_count, error *e);
+bool arc_run_rounds(pass_context *c, const char *what, error *e);
+// pass_run of a call of "arc" with these parameters (the call's own are ignored), after rounds with as many slices as each tile
+// came to.
+bool arc_run_at_rounds(pass_context *c, const pass_call *call, const arc_params *params, error *e);
 
 void arc_put(float to[4], vec3 a, double w);
 

@@ -1,6 +1,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "passes/params.h"
 #include "passes/pass.h"
 
 // Standard deviation of the Gaussian, as a share of the picture's diagonal, so that the look does not depend on resolution.
@@ -29,21 +30,29 @@ static void depth_range(const gbuffer *gb, float *near, float *far)
 
 bool pass_depthmask(pass_context *c, error *e)
 {
-    struct {
-        float near, scale, sigma;
-        int radius;
-    } params;
+    depthmask_params params;
     float far;
     depth_range(c->gb, &params.near, &far);
     params.scale = far > params.near ? 1.0f / (far - params.near) : 0.0f;
     params.sigma = (float)(SIGMA * hypot(c->width, c->height));
     params.radius = (int)ceilf(3.0f * params.sigma);
     gpu_image sums = {0};
-    const pass_binding bindings[] = {{2, &sums, GL_READ_WRITE}, {3, &c->depthmask, GL_WRITE_ONLY}};
-    // Rows that hold no surface themselves are read by those that do: everywhere.
+    const pass_call across = {
+        .program = "depthmask",
+        .variant = "ACROSS",
+        .everywhere = true, // rows that hold no surface themselves are read by those that do
+        PASS_PARAMS(params),
+        .writes = {{"sums_image", &sums}},
+    };
+    const pass_call down = {
+        .program = "depthmask",
+        .variant = "DOWN",
+        PASS_PARAMS(params),
+        .reads = {{"sums_image", &sums}},
+        .writes = {{"mask_image", &c->depthmask}},
+    };
     bool ok = pass_make(c, &sums, GL_RG32F, 0.0f, e) && pass_make(c, &c->depthmask, GL_R32F, 0.0f, e) &&
-              pass_run(c, "depthmask", "ACROSS 1\n", &params, sizeof params, bindings, 1, true, e) &&
-              pass_run(c, "depthmask", "DOWN 1\n", &params, sizeof params, bindings, 2, false, e);
+              pass_run(c, &across, e) && pass_run(c, &down, e);
     gpu_image_free(&sums);
     return ok;
 }

@@ -1,9 +1,8 @@
-#include "passes/pass.h"
-
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "passes/pass.h"
+#include "passes/variants.h"
 
 enum { EDGE_TILE = 32 };
 
@@ -16,27 +15,50 @@ static bool make_tiles(const pass_context *c, gpu_tiles *tiles, error *e)
     if (!mask) return false;
     for (size_t i = 0; i < n; i++) mask[i] = c->gb->coverage[i] > 0.0f && c->gb->depth[i] == 0.0f;
     bool ok = gpu_tiles_of(tiles, c->width, c->height, EDGE_TILE, mask, e);
-    tiles->stop = c->tiles.stop;
     free(mask);
     return ok;
 }
 
+// The SH vector has images enough for a run of its own.
+static bool fill_vector(pass_context *c, const gpu_tiles *tiles, error *e)
+{
+    const pass_call call = {
+        .program = "edges",
+        .label = "edges sh",
+        .variant = c->sh[3].id ? "SH BANDS3" : "SH",
+        .tiles = tiles,
+        .reads = {{"coverage_image", &c->coverage}},
+        .writes = {{"sh0_image", &c->sh[0]},
+                   {"sh1_image", &c->sh[1]},
+                   {"sh2_image", &c->sh[2]},
+                   {"sh3_image", &c->sh[3]},
+                   {"sh4_image", &c->sh[4]}},
+    };
+    return c->sh[0].id == 0 || pass_run(c, &call, e);
+}
+
 bool pass_edges(pass_context *c, error *e)
 {
-    char defines[128];
-    snprintf(defines, sizeof defines, "%s%s%s%s%s%s", c->sh[3].id ? "BANDS3 1\n" : "", c->bent.id ? "BENT 1\n" : "",
-             c->sh[0].id ? "SH 1\n" : "", c->visibility.id ? "VISIBILITY 1\n" : "", c->radiance.id ? "RADIANCE 1\n" : "",
-             c->indirect.id ? "INDIRECT 1\n" : "");
-    const pass_binding bindings[] = {
-        {2, &c->coverage, GL_READ_ONLY},  {3, &c->occlusion, GL_READ_WRITE}, {4, &c->visibility, GL_READ_WRITE},
-        {5, &c->radiance, GL_READ_WRITE}, {6, &c->indirect, GL_READ_WRITE},  {7, &c->sh[0], GL_READ_WRITE},
-        {8, &c->sh[1], GL_READ_WRITE},    {9, &c->sh[2], GL_READ_WRITE},     {10, &c->bent, GL_READ_WRITE},
-        {11, &c->sh[3], GL_READ_WRITE},   {12, &c->sh[4], GL_READ_WRITE}};
-    gpu_tiles whole = c->tiles, tiles;
+    variant v = {{0}};
+    gpu_tiles tiles;
+    variant_add(&v, true, "OCCLUSION");
+    variant_add(&v, c->bent.id != 0, "BENT");
+    variant_add(&v, c->visibility.id != 0, "VISIBILITY");
+    variant_add(&v, c->radiance.id != 0, "RADIANCE");
+    variant_add(&v, c->indirect.id != 0, "INDIRECT");
     if (!make_tiles(c, &tiles, e)) return false;
-    c->tiles = tiles;
-    bool ok = pass_run(c, "edges", defines, NULL, 0, bindings, 11, false, e);
-    c->tiles = whole;
+    const pass_call call = {
+        .program = "edges",
+        .variant = v.words,
+        .tiles = &tiles,
+        .reads = {{"coverage_image", &c->coverage}},
+        .writes = {{"occlusion_image", &c->occlusion},
+                   {"bent_image", &c->bent},
+                   {"visibility_image", &c->visibility},
+                   {"radiance_image", &c->radiance},
+                   {"indirect_image", &c->indirect}},
+    };
+    bool ok = pass_run(c, &call, e) && fill_vector(c, &tiles, e);
     gpu_tiles_free(&tiles);
     return ok;
 }

@@ -1,12 +1,9 @@
+#include "passes/params.h"
 #include "passes/pass.h"
 
 bool pass_hemisphere(pass_context *c, error *e)
 {
-    struct {
-        float radius;
-        int samples, seed, unused;
-    } params = {(float)c->set.radius, c->set.samples, c->set.seed, 0};
-    if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e)) return false;
-    const pass_binding bindings[] = {{2, &c->occlusion, GL_WRITE_ONLY}};
-    return pass_run(c, "hemisphere", NULL, &params, sizeof params, bindings, 1, false, e);
+    const points_params params = {.radius = (float)c->set.radius, .samples = c->set.samples, .seed = c->set.seed};
+    const pass_call call = {.program = "hemisphere", PASS_PARAMS(params), .writes = {{"occlusion_image", &c->occlusion}}};
+    return pass_make(c, &c->occlusion, GL_R32F, 1.0f, e) && pass_run(c, &call, e);
 }

@@ -1,8 +1,9 @@
+#include "passes/params.h"
 #include "passes/pass.h"
 
 bool pass_look(pass_context *c, gpu_image *scalar, error *e)
 {
-    float params[4] = {(float)c->set.scale, (float)c->set.contrast};
-    const pass_binding bindings[] = {{2, scalar, GL_READ_WRITE}};
-    return pass_run(c, "look", NULL, params, sizeof params, bindings, 1, false, e);
+    const look_params params = {.scale = (float)c->set.scale, .contrast = (float)c->set.contrast};
+    const pass_call call = {.program = "look", PASS_PARAMS(params), .writes = {{"scalar_image", scalar}}};
+    return pass_run(c, &call, e);
 }

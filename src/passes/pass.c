@@ -7,15 +7,8 @@
 #include <time.h>
 
 #include "gpu/transfer.h"
-
-// The std140 block of shaders/include/frame.glsl, in its order.
-typedef struct frame_block {
-    float lens[4];
-    int size[4];
-    float map_from_camera[3][4];
-    float env[4];
-    float sh[9][4];
-} frame_block;
+#include "passes/params.h"
+#include "passes/variants.h"
 
 static double now(clockid_t clock)
 {
@@ -86,26 +79,50 @@ bool pass_upload_environment(gpu *g, const environment *env, gpu_image *out, err
     return gpu_finish(g, "the upload of the environment", e);
 }
 
-bool pass_begin(pass_context *c, gpu *g, const gbuffer *gb, const environment *env, const pass_settings *set, bool timing,
-                log_t *log, error *e)
+bool pass_begin(pass_context *c, error *e)
 {
-    *c = (pass_context){
-        .g = g, .log = log, .timing = timing, .width = gb->width, .height = gb->height, .set = *set, .gb = gb, .env = env};
     double wall = now(CLOCK_MONOTONIC), cpu = now(CLOCK_PROCESS_CPUTIME_ID);
-    bool ok = upload_all(c, gb, e) &&
-              gpu_tiles_make(&c->tiles, c->width, c->height, gpu_tile_size(g, set->samples), gb->depth, gb->coverage, e) &&
-              gpu_finish(g, "the upload", e);
+    c->width = c->gb->width, c->height = c->gb->height;
+    bool ok = upload_all(c, c->gb, e) &&
+              gpu_tiles_make(&c->tiles, c->width, c->height, gpu_tile_size(c->g, c->set.samples), c->gb->depth, c->gb->coverage, e) &&
+              gpu_finish(c->g, "the upload", e);
     if (!ok) {
         pass_end(c);
         return false;
     }
     frame_block block;
-    fill_block(&block, gb, env, set->world_from_camera);
+    fill_block(&block, c->gb, c->env, c->set.world_from_camera);
     c->frame_uniforms = gpu_uniforms_make(sizeof block);
-    gpu_uniforms_set(c->frame_uniforms, 0, &block, sizeof block);
-    c->params_uniforms = gpu_uniforms_make(512);
+    gpu_uniforms_set(c->frame_uniforms, FRAME_BINDING, &block, sizeof block);
+    c->params_uniforms = gpu_uniforms_make(PARAMS_LARGEST);
     c->timings[c->timing_count++] = (pass_timing){"upload", now(CLOCK_MONOTONIC) - wall, now(CLOCK_PROCESS_CPUTIME_ID) - cpu, 0};
     return true;
+}
+
+pass_context pass_like(const pass_context *c, const gbuffer *gb, const pass_settings *set)
+{
+    pass_context like = {
+        .g = c->g,
+        .log = c->log,
+        .timing = c->timing,
+        .threads = c->threads,
+        .stop = c->stop,
+        .set = *set,
+        .want_diffuse = c->want_diffuse,
+        .want_bent = c->want_bent,
+        .want_error = c->want_error,
+        .want_indirect = c->want_indirect,
+        .want_radiance = c->want_radiance,
+        .want_visibility = c->want_visibility,
+        .gb = gb,
+        .env = c->env,
+        .environment = c->environment,
+        .proxies = c->proxies,
+        .sunless = c->sunless,
+        .trace = c->trace,
+    };
+    memcpy(like.stored_sh, c->stored_sh, sizeof like.stored_sh);
+    return like;
 }
 
 void pass_end(pass_context *c)
@@ -133,67 +150,113 @@ bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, er
     return true;
 }
 
-pass_timing pass_clock(const char *name) { return (pass_timing){name, now(CLOCK_MONOTONIC), now(CLOCK_PROCESS_CPUTIME_ID), 0}; }
+pass_timing pass_clock(const pass_context *c, const char *name)
+{
+    return (pass_timing){name, now(CLOCK_MONOTONIC), now(CLOCK_PROCESS_CPUTIME_ID), c->tiles.occupied_count};
+}
 
 void pass_clock_stop(pass_context *c, pass_timing since)
 {
     if (c->timing_count == PASS_MAX_TIMINGS) return;
     c->timings[c->timing_count++] = (pass_timing){since.name, now(CLOCK_MONOTONIC) - since.wall_ms,
-                                                  now(CLOCK_PROCESS_CPUTIME_ID) - since.cpu_ms, c->tiles.occupied_count};
+                                                  now(CLOCK_PROCESS_CPUTIME_ID) - since.cpu_ms, since.tiles};
 }
 
-GLuint pass_program(pass_context *c, const char *file, const char *defines, error *e)
+// ---- running a shader
+
+static const gpu_image *picture_named(const pass_context *c, const pass_call *call, const char *name)
 {
-    char all[256];
-    snprintf(all, sizeof all, "%s%s", c->gb->camera.kind == CAMERA_ORTHOGRAPHIC ? "ORTHOGRAPHIC 1\n" : "",
-             defines ? defines : "");
-    return gpu_program(c->g, file, all, e);
+    for (const pass_picture *p = call->reads; p->name; p++)
+        if (strcmp(p->name, name) == 0) return p->image;
+    for (const pass_picture *p = call->writes; p->name; p++)
+        if (strcmp(p->name, name) == 0) return p->image;
+    if (strcmp(name, "depth_image") == 0) return &c->depth;
+    if (strcmp(name, "normal_image") == 0) return &c->normal;
+    return NULL;
 }
 
-// What dispatched and drawn passes have in common: program, blocks and images in place.
-static bool set_up(pass_context *c, const char *file, const char *defines, const void *params, size_t params_size,
-                   const pass_binding *bindings, int binding_count, error *e)
+static const gpu_buffer *buffer_named(const pass_call *call, const char *name)
 {
-    GLuint program = pass_program(c, file, defines, e);
-    if (!program) return false;
-    glUseProgram(program);
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, c->frame_uniforms);
-    if (params) gpu_uniforms_set(c->params_uniforms, 1, params, params_size);
-    gpu_bind_image(0, &c->depth, GL_READ_ONLY);
-    gpu_bind_image(1, &c->normal, GL_READ_ONLY);
-    glBindTextureUnit(0, c->environment.id);
-    for (int i = 0; i < binding_count; i++) gpu_bind_image(bindings[i].unit, bindings[i].image, bindings[i].access);
+    for (const pass_store *b = call->buffers; b->name; b++)
+        if (strcmp(b->name, name) == 0) return b->buffer;
+    return NULL;
+}
+
+// Everything that the program uses goes to its place.
+static bool bind_all(const pass_context *c, const pass_call *call, const gpu_program *p, error *e)
+{
+    for (int i = 0; i < p->slot_count; i++) {
+        const gpu_slot *s = &p->slots[i];
+        if (s->kind == SLOT_OUTPUT) continue;
+        const gpu_image *image = s->kind == SLOT_BUFFER ? NULL : picture_named(c, call, s->name);
+        const gpu_buffer *buffer = s->kind == SLOT_BUFFER ? buffer_named(call, s->name) : NULL;
+        if (strcmp(s->name, "environment_map") == 0) // the white one has no picture, and is not looked up
+            gpu_bind_picture(s, call->environment ? call->environment : &c->environment);
+        else if (image && image->id)
+            gpu_bind_picture(s, image);
+        else if (buffer && buffer->id)
+            gpu_bind_buffer(s, buffer);
+        else
+            return err_set(e, ERR_GL, call->program, s->name, "the shader uses this, and its pass did not give it");
+    }
     return true;
 }
 
-static bool note_time(pass_context *c, const char *name, double wall, double cpu, bool everywhere, error *e)
+static const gpu_program *program_of(pass_context *c, const pass_call *call, bool drawn, error *e)
 {
-    if (c->timing && !gpu_finish(c->g, name, e)) return false;
-    if (c->timing_count < PASS_MAX_TIMINGS)
-        c->timings[c->timing_count++] = (pass_timing){name, now(CLOCK_MONOTONIC) - wall, now(CLOCK_PROCESS_CPUTIME_ID) - cpu,
-                                                      everywhere ? c->tiles.columns * c->tiles.rows : c->tiles.occupied_count};
+    const variant_row *row = variant_find(call->program);
+    const char *words = call->variant ? call->variant : "";
+    char file[64], defines[2 * VARIANT_TEXT];
+    if (!row || !variant_allowed(row, words)) {
+        err_set(e, ERR_GL, call->program, NULL, "passes/variants.c does not know the variant '%s' of this shader", words);
+        return NULL;
+    }
+    variant v = {{0}};
+    snprintf(v.words, sizeof v.words, "%s", words);
+    variant_add(&v, c->gb->camera.kind == CAMERA_ORTHOGRAPHIC, "ORTHOGRAPHIC");
+    snprintf(file, sizeof file, "%s.comp", call->program);
+    if (variant_defines(v.words, defines, sizeof defines)) return gpu_program_get(c->g, file, defines, drawn, e);
+    err_set(e, ERR_GL, call->program, NULL, "the words of variant '%s' are too long", words);
+    return NULL;
+}
+
+static void draw(pass_context *c, const pass_call *call, const gpu_program *p, const gpu_tiles *tiles)
+{
+    const gpu_image *targets[GPU_MAX_TARGETS] = {NULL};
+    for (const pass_picture *w = call->writes; w->name; w++) {
+        const gpu_slot *s = gpu_slot_of(p, w->name);
+        if (s && s->unit >= 0 && s->unit < GPU_MAX_TARGETS) targets[s->unit] = w->image;
+    }
+    gpu_draw_tiles(c->g, tiles, call->everywhere, targets, GPU_MAX_TARGETS);
+}
+
+static int tiles_of(const pass_call *call, const gpu_tiles *t)
+{
+    return call->groups[0] ? 0 : call->everywhere ? t->columns * t->rows : t->occupied_count;
+}
+
+bool pass_run(pass_context *c, const pass_call *call, error *e)
+{
+    pass_timing clock = pass_clock(c, call->label ? call->label : call->program);
+    const variant_row *row = variant_find(call->program);
+    bool drawn = row && row->drawable && c->g->habits.draw && !call->exact;
+    const gpu_program *p = program_of(c, call, drawn, e);
+    if (!p) return false;
+    gpu_tiles tiles = call->tiles ? *call->tiles : c->tiles;
+    tiles.stop = c->stop;
+    glUseProgram(p->id);
+    glBindBufferBase(GL_UNIFORM_BUFFER, FRAME_BINDING, c->frame_uniforms);
+    if (call->params) gpu_uniforms_set(c->params_uniforms, PARAMS_BINDING, call->params, call->params_size);
+    if (!bind_all(c, call, p, e)) return false;
+    if (call->groups[0])
+        gpu_dispatch_groups(c->g, call->groups[0], call->groups[1], call->range[0], call->range[1]);
+    else if (drawn)
+        draw(c, call, p, &tiles);
+    else
+        gpu_dispatch_tiles(c->g, &tiles, call->everywhere);
+    if (call->untimed) return true;
+    if (c->timing && !gpu_finish(c->g, clock.name, e)) return false;
+    clock.tiles = tiles_of(call, &tiles);
+    pass_clock_stop(c, clock);
     return true;
-}
-
-bool pass_run(pass_context *c, const char *name, const char *defines, const void *params, size_t params_size,
-              const pass_binding *bindings, int binding_count, bool everywhere, error *e)
-{
-    double wall = now(CLOCK_MONOTONIC), cpu = now(CLOCK_PROCESS_CPUTIME_ID);
-    char file[64];
-    snprintf(file, sizeof file, "%.*s.comp", (int)strcspn(name, " "), name);
-    if (!set_up(c, file, defines, params, params_size, bindings, binding_count, e)) return false;
-    gpu_dispatch_tiles(c->g, &c->tiles, everywhere);
-    return note_time(c, name, wall, cpu, everywhere, e);
-}
-
-bool pass_draw(pass_context *c, const char *name, const char *defines, const void *params, size_t params_size,
-               const pass_binding *bindings, int binding_count, const gpu_image *const targets[], int target_count,
-               bool everywhere, error *e)
-{
-    double wall = now(CLOCK_MONOTONIC), cpu = now(CLOCK_PROCESS_CPUTIME_ID);
-    char file[64];
-    snprintf(file, sizeof file, "%s.frag", name);
-    if (!set_up(c, file, defines, params, params_size, bindings, binding_count, e)) return false;
-    gpu_draw_tiles(c->g, &c->tiles, everywhere, targets, target_count);
-    return note_time(c, name, wall, cpu, everywhere, e);
 }

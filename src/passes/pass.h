@@ -83,19 +83,30 @@ typedef struct pass_rounds {
 } pass_rounds;
 
 typedef struct pass_context {
+    // Given by the caller before pass_begin.
     gpu *g;
     log_t *log;
     bool timing; // measure: waits for the GPU after every pass
-    int width, height;
+    int threads;
+    const volatile int
+        *stop; // borrowed, may be NULL: once it is not zero, no further tile is worked on, and the frame will be dropped
     pass_settings set;
     bool want_diffuse; // the composite pass also writes the diffuse layer
     bool want_bent;
     bool want_error;                     // the standard error, after rounds
     bool want_indirect;                  // the method's own loop makes the bounce too, if it can
     bool want_radiance, want_visibility; // what the method's own loop should make besides occlusion
+    const gbuffer *gb;                   // borrowed
+    const environment *env;              // borrowed; NULL without light
+    gpu_image environment;               // borrowed: its texture; id 0 for the white one
+    const float *stored_sh[SH_IMAGES];   // --from-sh: 4 a pixel as in sh, borrowed; NULL: s3ho measures
+    const proxy_set *proxies;            // borrowed; NULL or empty: none
+    pass_sunless *sunless;               // borrowed, lives as long as the batch
+    struct trace_scene *trace;           // the same; for raytrace
 
+    int width, height;
     // Inputs on the GPU; id 0 where the plan does not need them.
-    gpu_image depth, normal, albedo, beauty, material, emission, diffuse_direct, coverage, environment;
+    gpu_image depth, normal, albedo, beauty, material, emission, diffuse_direct, coverage;
     // Layers; id 0 until their pass has run.
     gpu_image occlusion, visibility, radiance, indirect, specular, diffuse_share, composite, diffuse, depthmask;
     gpu_image change;        // how much the second half of a method's slices moved the occlusion; for pass_denoise
@@ -106,13 +117,6 @@ typedef struct pass_context {
     gpu_image plane_image;   // the planes, for the shader
     gpu_image surface;       // depth and normal in one texel, for the slice marches
 
-    const float *stored_sh[SH_IMAGES]; // --from-sh: 4 a pixel as in sh, borrowed; NULL: s3ho measures
-    const environment *env;            // borrowed; NULL without light
-    const gbuffer *gb;                 // borrowed: for what is found on the CPU
-    const proxy_set *proxies;          // borrowed; NULL or empty: none
-    pass_sunless *sunless;             // borrowed, lives as long as the batch
-    struct trace_scene *trace;         // the same; for raytrace
-    int threads;
     bool suns_apart;  // radiance and visibility lack the suns of `sunless`, which bear no filter, until pass_suns adds them
     bool denoised;    // the occlusion is, and bears no blur
     plane_set planes; // found by the pass that uses them
@@ -126,36 +130,59 @@ typedef struct pass_context {
     int upload_count;
 } pass_context;
 
-// Uploads what `need` (gbuffer_need bits) says and the plan wants. env may be NULL (no light wanted).
-bool pass_begin(pass_context *c, gpu *g, const gbuffer *gb, const environment *env, const pass_settings *set, bool timing,
-                log_t *log, error *e);
+// Uploads what the G-buffer holds. On failure there is nothing to end.
+bool pass_begin(pass_context *c, error *e);
 void pass_end(pass_context *c);
+
+// A context with all that the caller of pass_begin gave to `c`, for another G-buffer and other settings; not begun.
+pass_context pass_like(const pass_context *c, const gbuffer *gb, const pass_settings *set);
 
 // The environment's texture, once per batch. The white environment has none: out->id stays 0.
 bool pass_upload_environment(gpu *g, const environment *env, gpu_image *out, error *e);
 
-typedef struct pass_binding {
-    int unit;
+// ---- running a shader
+
+enum { PASS_MOST_READS = 12, PASS_MOST_WRITES = 9, PASS_MOST_BUFFERS = 8 };
+
+// A picture or a buffer by the name it has in the shader. Lists of them end at a NULL name. Names that the variant does not use
+// may be there; one that it uses and nobody gave is an error.
+typedef struct pass_picture {
+    const char *name;
     const gpu_image *image;
-    GLenum access;
-} pass_binding;
+} pass_picture;
+typedef struct pass_store {
+    const char *name;
+    const gpu_buffer *buffer;
+} pass_store;
 
-// The program of a shader file for the frame's camera, with further defines (may be NULL).
-GLuint pass_program(pass_context *c, const char *file, const char *defines, error *e);
+// One run of a shader program.
+typedef struct pass_call {
+    const char *program;          // shaders/<program>.comp
+    const char *variant;          // words of passes/variants.h; NULL: none
+    const char *label;            // in the report; NULL: the program's name. Lives as long as the context
+    bool untimed;                 // it is part of something that is timed as a whole
+    const gpu_tiles *tiles;       // NULL: the frame's
+    bool everywhere;              // tiles without a surface too
+    bool exact;                   // never drawn: drawing may flush denormals
+    int groups[2];                // not 0: so many work groups instead of tiles,
+    int range[2];                 // and what the shader's `tile` holds then: first item, end
+    const gpu_image *environment; // NULL: the frame's
+    const void *params;           // of passes/params.h; NULL: none
+    size_t params_size;
+    pass_picture reads[PASS_MOST_READS + 1], writes[PASS_MOST_WRITES + 1]; // depth, normal and environment are always there
+    pass_store buffers[PASS_MOST_BUFFERS + 1];
+} pass_call;
 
-// Runs shader `name` over the tiles with the given parameter block (may be NULL) and images. What follows a space in `name` only
-// tells one use of the shader from another in the report.
-bool pass_run(pass_context *c, const char *name, const char *defines, const void *params, size_t params_size,
-              const pass_binding *bindings, int binding_count, bool everywhere, error *e);
+// The two members of a parameter block.
+#define PASS_PARAMS(block) .params = &(block), .params_size = sizeof(block)
 
-// Times of a pass that dispatches by itself: pass_clock_stop adds what has passed since to the timings.
-pass_timing pass_clock(const char *name);
+// Runs it over the tiles: dispatched, or drawn where the shader can be and the device does that faster. What follows finds the
+// result.
+bool pass_run(pass_context *c, const pass_call *call, error *e);
+
+// Times of what runs several shaders: pass_clock_stop adds what has passed since to the timings.
+pass_timing pass_clock(const pass_context *c, const char *name);
 void pass_clock_stop(pass_context *c, pass_timing since);
-
-// The same with shaders/<name>.frag, whose output at location i is drawn into targets[i] (gpu_draw_tiles).
-bool pass_draw(pass_context *c, const char *name, const char *defines, const void *params, size_t params_size,
-               const pass_binding *bindings, int binding_count, const gpu_image *const targets[], int target_count,
-               bool everywhere, error *e);
 
 // Makes an image of the frame's size, cleared to `value` in every component.
 bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, error *e);
@@ -181,11 +208,13 @@ typedef struct pass_denoising {
     const gpu_image *moments; // between the directions, rgba32f
     const gpu_image *result;
     const gpu_image *square; // of the error that is left; NULL: not wanted
+    const gpu_tiles *tiles;  // NULL: the frame's
 } pass_denoising;
 bool pass_denoise_across(pass_context *c, const pass_denoising *d, error *e); // one direction of it, then the other
 bool pass_denoise_down(pass_context *c, const pass_denoising *d, error *e);
-bool pass_denoise(pass_context *c, error *e);                                                          // occlusion: in place
-bool pass_blur(pass_context *c, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e); // in place; NULL = none
+bool pass_denoise(pass_context *c, error *e); // occlusion: in place
+// In place, over `radius` pixels; NULL = none.
+bool pass_blur(pass_context *c, int radius, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e);
 // What the method and the bounce made of a frame of half the size (gbuffer/half.h), brought to the size of `c`: its occlusion,
 // visibility, radiance, indirect, bent and sh, as far as `small` has them and `c` has not; and indirect alone, where it is made
 // after the others have gone.

@@ -1,8 +1,9 @@
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "passes/params.h"
 #include "passes/pass.h"
+#include "passes/variants.h"
 
 // Centre in camera space and radius; albedo.
 static bool upload(pass_context *c, gpu_image *image, error *e)
@@ -23,39 +24,84 @@ static bool upload(pass_context *c, gpu_image *image, error *e)
     return ok;
 }
 
-static bool run(pass_context *c, const char *defines, const pass_binding *layers, int count, error *e)
+typedef struct proxy_run {
+    pass_context *c;
+    proxies_params params;
+    gpu_image spheres;
+} proxy_run;
+
+static bool begin(proxy_run *r, pass_context *c, error *e)
 {
-    struct {
-        float radius;
-        int count;
-        float strength;
-        int unused;
-    } params = {(float)c->set.radius, c->proxies->count, (float)c->set.bounce_strength, 0};
-    gpu_image spheres = {0};
-    pass_binding bindings[10] = {{2, &spheres, GL_READ_ONLY}};
-    for (int i = 0; i < count; i++) bindings[1 + i] = layers[i];
-    bool ok = upload(c, &spheres, e) && pass_run(c, "proxies", defines, &params, sizeof params, bindings, 1 + count, false, e);
-    gpu_image_free(&spheres);
-    return ok;
+    *r = (proxy_run){
+        .c = c,
+        .params = {.radius = (float)c->set.radius, .count = c->proxies->count, .strength = (float)c->set.bounce_strength}};
+    return upload(c, &r->spheres, e);
+}
+
+// The SH vector has images enough for a run of its own.
+static bool block_vector(const proxy_run *r, error *e)
+{
+    pass_context *c = r->c;
+    const pass_call call = {
+        .program = "proxies",
+        .label = "proxies sh",
+        .variant = c->sh[3].id ? "SH BANDS3" : "SH",
+        PASS_PARAMS(r->params),
+        .reads = {{"sphere_image", &r->spheres}},
+        .writes = {{"sh0_image", &c->sh[0]},
+                   {"sh1_image", &c->sh[1]},
+                   {"sh2_image", &c->sh[2]},
+                   {"sh3_image", &c->sh[3]},
+                   {"sh4_image", &c->sh[4]}},
+    };
+    return c->sh[0].id == 0 || pass_run(c, &call, e);
+}
+
+static bool block_layers(const proxy_run *r, error *e)
+{
+    pass_context *c = r->c;
+    variant v = {{0}};
+    variant_add(&v, true, "OCCLUSION");
+    variant_add(&v, c->sh[0].id != 0, "VECTOR");
+    variant_add(&v, c->bent.id != 0, "BENT");
+    variant_add(&v, c->visibility.id != 0, "VISIBILITY");
+    variant_add(&v, c->radiance.id != 0, "RADIANCE");
+    const pass_call call = {
+        .program = "proxies",
+        .variant = v.words,
+        PASS_PARAMS(r->params),
+        .reads = {{"sphere_image", &r->spheres}},
+        .writes = {{"occlusion_image", &c->occlusion},
+                   {"bent_image", &c->bent},
+                   {"visibility_image", &c->visibility},
+                   {"radiance_image", &c->radiance}},
+    };
+    return pass_run(c, &call, e);
 }
 
 bool pass_proxies(pass_context *c, error *e)
 {
+    proxy_run r;
     if (!c->proxies || c->proxies->count == 0) return true;
-    char defines[96];
-    snprintf(defines, sizeof defines, "%s%s%s%s%s", c->radiance.id ? "RADIANCE 1\n" : "",
-             c->visibility.id ? "VISIBILITY 1\n" : "", c->bent.id ? "BENT 1\n" : "", c->sh[0].id ? "VECTOR 1\n" : "",
-             c->sh[3].id ? "BANDS3 1\n" : "");
-    const pass_binding layers[] = {
-        {3, &c->occlusion, GL_READ_WRITE}, {4, &c->visibility, GL_READ_WRITE}, {5, &c->radiance, GL_READ_WRITE},
-        {6, &c->bent, GL_READ_WRITE},      {7, &c->sh[0], GL_READ_WRITE},      {8, &c->sh[1], GL_READ_WRITE},
-        {9, &c->sh[2], GL_READ_WRITE},     {10, &c->sh[3], GL_READ_WRITE},     {11, &c->sh[4], GL_READ_WRITE}};
-    return run(c, defines, layers, 9, e);
+    bool ok = begin(&r, c, e) && block_layers(&r, e) && block_vector(&r, e);
+    gpu_image_free(&r.spheres);
+    return ok;
 }
 
 bool pass_proxies_bounce(pass_context *c, error *e)
 {
+    proxy_run r;
     if (!c->proxies || c->proxies->count == 0) return true;
-    const pass_binding layers[] = {{3, &c->indirect, GL_READ_WRITE}};
-    return run(c, "BOUNCE 1\n", layers, 1, e);
+    bool ok = begin(&r, c, e);
+    const pass_call call = {
+        .program = "proxies",
+        .label = "proxies bounce",
+        .variant = "BOUNCE",
+        PASS_PARAMS(r.params),
+        .reads = {{"sphere_image", &r.spheres}},
+        .writes = {{"indirect_image", &c->indirect}},
+    };
+    ok = ok && pass_run(c, &call, e);
+    gpu_image_free(&r.spheres);
+    return ok;
 }

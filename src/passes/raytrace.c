@@ -1,36 +1,28 @@
 // The ray-traced reference: the picture's points against the scene's own mesh.
 //
 // Once a frame every point is put onto the mesh (trace_points). Then, for every sample of every batch of pixels: rays from the
-// points (trace_start), traced (passes/trace.h); their sums, and rays on from what they hit (trace_bounce), traced; their sums
-// (trace_gather). Samples come in rounds over the whole frame. At the end sums become layers (trace_finish).
+// points (trace_start), traced (passes/trace.h); their sums (trace_add); rays on from what they hit (trace_bounce), traced; their
+// sums (trace_gather). Samples come in rounds over the whole frame. At the end sums become layers (trace_finish).
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/mem.h"
 #include "light/choices.h"
+#include "passes/params.h"
 #include "passes/pass.h"
 #include "passes/trace.h"
+#include "passes/variants.h"
 
 enum { BATCH = 16384, ROUND = 16, PROBES = 2048 };
 static const double WRONG_MESH = 0.1, DOUBTFUL_MESH = 0.8; // shares of the points that lie on it
-
-// shaders/include/trace.glsl
-typedef struct trace_params {
-    float mesh_from_camera[3][4];
-    float radius, level, strength;
-    int seed, sample_index, samples, unused[2];
-    int choices[4];
-} trace_params;
 
 // One frame being traced.
 typedef struct trace_run {
     pass_context *c;
     trace_scene *s;
     trace_params params;
-    char defines[64];
-    bool light, bounce;
+    bool light, bounce, visibility;
     size_t batch, pixel_count;
     gpu_buffer pixels, rays, hits, gains, next_rays, next_hits, next_gains;
     gpu_image point, face;
@@ -67,33 +59,34 @@ static bool upload_pixels(trace_run *r, size_t stride, error *e)
 
 // ---- one step over a batch
 
-static bool run_step(trace_run *r, const char *name, const char *defines, size_t first, error *e)
+// Runs `program` over the batch that begins at `first`. Rays, hits and gains: those of the points, or with `next` those that the
+// bounce sends on.
+static bool run_step(trace_run *r, const char *program, const char *words, size_t first, bool next, error *e)
 {
     pass_context *c = r->c;
     size_t end = first + r->batch < r->pixel_count ? first + r->batch : r->pixel_count;
-    GLuint program = pass_program(c, name, defines, e);
-    if (!program) return false;
-    glUseProgram(program);
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, c->frame_uniforms);
-    gpu_uniforms_set(c->params_uniforms, 1, &r->params, sizeof r->params);
-    const gpu_image *images[] = {&c->depth,     &c->normal,   &r->point,    &r->face,
-                                 &c->occlusion, &c->radiance, &c->indirect, &c->visibility};
-    for (int i = 0; i < 8; i++) gpu_bind_image(i, images[i], i < 2 ? GL_READ_ONLY : GL_READ_WRITE);
-    glBindTextureUnit(0, c->environment.id);
-    gpu_bind_buffer(3, &r->s->triangles);
-    gpu_bind_buffer(6, &r->s->choices);
-    gpu_bind_buffer(7, &r->pixels);
-    glUniform4i(0, (GLint)first, (GLint)end, 0, 0);
-    gpu_dispatch(c->g, (GLuint)(end - first + 63) / 64, 1, 1);
-    gpu_barrier(c->g, GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-    return true;
-}
-
-static void bind_rays(const gpu_buffer *rays, const gpu_buffer *hits, const gpu_buffer *gains)
-{
-    gpu_bind_buffer(0, rays);
-    gpu_bind_buffer(1, hits);
-    gpu_bind_buffer(2, gains);
+    const pass_call call = {
+        .program = program,
+        .variant = words,
+        .untimed = true,
+        .groups = {(int)((end - first + 63) / 64), 1},
+        .range = {(int)first, (int)end},
+        PASS_PARAMS(r->params),
+        .reads = {{"point_image", &r->point}, {"face_image", &r->face}},
+        .writes = {{"occlusion_image", &c->occlusion},
+                   {"radiance_image", &c->radiance},
+                   {"indirect_image", &c->indirect},
+                   {"visibility_image", &c->visibility}},
+        .buffers = {{"Pixels", &r->pixels},
+                    {"Rays", next ? &r->next_rays : &r->rays},
+                    {"Hits", next ? &r->next_hits : &r->hits},
+                    {"Gains", next ? &r->next_gains : &r->gains},
+                    {"NextRays", &r->next_rays},
+                    {"NextGains", &r->next_gains},
+                    {"Triangles", &r->s->triangles},
+                    {"Choices", r->s->choices.id ? &r->s->choices : &r->pixels}}, // without choices the shader does not look
+    };
+    return pass_run(c, &call, e);
 }
 
 static size_t size_of_batch(const trace_run *r, size_t first)
@@ -105,9 +98,8 @@ static size_t size_of_batch(const trace_run *r, size_t first)
 
 static bool find_points(trace_run *r, size_t first, error *e)
 {
-    bind_rays(&r->rays, &r->hits, &r->gains);
-    return run_step(r, "trace_points.comp", "FIND 1\n", first, e) &&
-           trace_send(r->s, r->c->g, &r->rays, &r->hits, size_of_batch(r, first), e);
+    return run_step(r, "trace_points", "FIND", first, false, e) &&
+           trace_send(r->s, r->c, &r->rays, &r->hits, size_of_batch(r, first), e);
 }
 
 static bool count_found(trace_run *r, size_t first, size_t *found, error *e)
@@ -167,8 +159,7 @@ static bool settle_points(trace_run *r, error *e)
     size_t found = 0;
     for (size_t first = 0; first < r->pixel_count; first += r->batch) {
         if (!find_points(r, first, e) || !count_found(r, first, &found, e)) return false;
-        bind_rays(&r->rays, &r->hits, &r->gains);
-        if (!run_step(r, "trace_points.comp", "SETTLE 1\n", first, e)) return false;
+        if (!run_step(r, "trace_points", "SETTLE", first, false, e)) return false;
     }
     trace_longer_rays(r->s);
     double share = r->pixel_count ? (double)found / (double)r->pixel_count : 1.0;
@@ -189,20 +180,17 @@ static bool settle_points(trace_run *r, error *e)
 static bool trace_sample(trace_run *r, size_t first, int index, error *e)
 {
     size_t n = size_of_batch(r, first), kinds = r->params.choices[0] > 0 ? 2 : 1;
-    gpu *g = r->c->g;
     r->params.sample_index = index;
-    bind_rays(&r->rays, &r->hits, &r->gains);
-    if (!run_step(r, "trace_start.comp", r->defines, first, e) ||
-        !trace_send(r->s, g, &r->rays, &r->hits, r->light ? n * kinds : n, e))
+    variant start = {{0}};
+    variant_add(&start, r->light, "LIGHT");
+    variant_add(&start, r->light || r->bounce, "DISTANT");
+    if (!run_step(r, "trace_start", start.words, first, false, e) ||
+        !trace_send(r->s, r->c, &r->rays, &r->hits, r->light ? n * kinds : n, e) ||
+        !run_step(r, "trace_add", r->light ? "LIGHT" : "", first, false, e))
         return false;
-    bind_rays(&r->rays, &r->hits, &r->gains);
-    gpu_bind_buffer(4, &r->next_rays);
-    gpu_bind_buffer(5, &r->next_gains);
-    if (!run_step(r, "trace_bounce.comp", r->defines, first, e)) return false;
     if (!r->bounce) return true;
-    if (!trace_send(r->s, g, &r->next_rays, &r->next_hits, n * kinds, e)) return false;
-    bind_rays(&r->next_rays, &r->next_hits, &r->next_gains);
-    return run_step(r, "trace_gather.comp", NULL, first, e);
+    return run_step(r, "trace_bounce", "", first, false, e) &&
+           trace_send(r->s, r->c, &r->next_rays, &r->next_hits, n * kinds, e) && run_step(r, "trace_gather", "", first, true, e);
 }
 
 // Of the occlusion so far, at most: a pixel's samples are spread more evenly than the independent ones this is true of.
@@ -225,7 +213,7 @@ static bool report_round(const trace_run *r, int done, error *e)
     return true;
 }
 
-static bool stopped(const pass_context *c) { return c->tiles.stop && *c->tiles.stop; }
+static bool stopped(const pass_context *c) { return c->stop && *c->stop; }
 
 static bool trace_rounds(trace_run *r, error *e)
 {
@@ -240,8 +228,12 @@ static bool trace_rounds(trace_run *r, error *e)
         done = end;
         if (!gpu_finish(r->c->g, "ray tracing", e) || !report_round(r, done, e)) return false;
     }
+    variant finish = {{0}};
+    variant_add(&finish, r->light, "LIGHT");
+    variant_add(&finish, r->bounce, "BOUNCE");
+    variant_add(&finish, r->visibility, "VISIBILITY");
     for (size_t first = 0; first < r->pixel_count; first += r->batch)
-        if (!run_step(r, "trace_finish.comp", r->defines, first, e)) return false;
+        if (!run_step(r, "trace_finish", finish.words, first, false, e)) return false;
     return true;
 }
 
@@ -310,12 +302,13 @@ static bool prepare(trace_run *r, error *e)
 bool pass_raytrace(pass_context *c, error *e)
 {
     bool light = c->want_radiance || c->want_visibility, bounce = c->want_indirect;
-    pass_timing clock = pass_clock("raytrace");
+    pass_timing clock = pass_clock(c, "raytrace");
     trace_run r = {
         .c = c,
         .s = c->trace,
         .light = light,
         .bounce = bounce,
+        .visibility = c->want_visibility,
         .batch = BATCH,
         .params = {.radius = (float)c->set.radius,
                    .level = c->set.env_level > 0.0 ? (float)c->set.env_level : 0.0f,
@@ -323,8 +316,6 @@ bool pass_raytrace(pass_context *c, error *e)
                    .seed = c->set.seed,
                    .samples = c->set.samples},
     };
-    snprintf(r.defines, sizeof r.defines, "%s%s%s%s", light ? "LIGHT 1\n" : "", bounce ? "BOUNCE 1\n" : "",
-             light || bounce ? "DISTANT 1\n" : "", c->want_visibility ? "VISIBILITY 1\n" : "");
     bool ok = prepare(&r, e) && (c->gb->valid == 0 || (choose_axes(&r, e) && settle_points(&r, e) && trace_rounds(&r, e)));
     free_room(&r);
     if (ok) pass_clock_stop(c, clock);

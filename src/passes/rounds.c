@@ -1,6 +1,5 @@
 // Sampling until the error is small enough, tile by tile.
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,42 +24,48 @@ enum { ERROR_RADIUS = 4 }; // of the mean of the errors, pixels
 // What the rounds hold while they run.
 typedef struct work {
     pass_context *c;
-    gpu_tiles whole; // the context's own, put back at the end
+    gpu_tiles tiles; // the rounds' own, with those of the next pass as the occupied ones
     gpu_image sums, moments, result, square;
     gpu_buffer totals;
     float (*read)[2];              // of each tile: sum of the squared errors, surfaces
     unsigned char *active, *grown; // tiles
 } work;
 
-// Passes go to the tiles of `mask`.
-static void go_to(work *w, unsigned char *mask)
+// The next pass goes to the tiles of `mask`.
+static const gpu_tiles *go_to(work *w, unsigned char *mask)
 {
-    gpu_tiles *t = &w->c->tiles;
+    gpu_tiles *t = &w->tiles;
     t->occupied = mask;
     t->occupied_count = 0;
     for (int i = 0; i < t->columns * t->rows; i++) t->occupied_count += mask[i];
+    return t;
 }
 
-static bool march(work *w, const char *defines, int round, error *e)
+static bool march(work *w, const char *what, int round, error *e)
 {
     pass_context *c = w->c;
     int before = round == 0 ? 0 : arc_round_slices(round - 1);
     arc_params params = arc_params_of_grid(c, arc_round_slices(round) - before, arc_round_steps(round));
     params.before = before;
-    char with[96], buf[160];
-    snprintf(with, sizeof with, "%sCHANGE 1\nROUND 1\n", defines);
-    const pass_binding bindings[] = {{2, &c->occlusion, GL_WRITE_ONLY},
-                                     {4, &c->change, GL_WRITE_ONLY},
-                                     {5, &w->sums, GL_READ_WRITE},
-                                     {6, &c->surface, GL_READ_ONLY},
-                                     {7, &c->plane_image, GL_READ_ONLY}};
-    return pass_run(c, "arc", arc_with_planes(c, with, buf, sizeof buf), &params, sizeof params, bindings, 5, false, e);
+    variant v = arc_variant(c, what);
+    variant_add(&v, true, "CHANGE");
+    variant_add(&v, true, "ROUND");
+    const pass_call call = {
+        .program = "arc",
+        .variant = v.words,
+        .untimed = true,
+        .tiles = go_to(w, w->active),
+        PASS_PARAMS(params),
+        .reads = {{"surface_image", &c->surface}, {"planes_image", &c->plane_image}},
+        .writes = {{"scalar_image", &c->occlusion}, {"change_image", &c->change}, {"sums_image", &w->sums}},
+    };
+    return pass_run(c, &call, e);
 }
 
 // Tiles beside active ones, too: the second direction reads what the first left there.
 static void grow(work *w)
 {
-    const gpu_tiles *t = &w->c->tiles;
+    const gpu_tiles *t = &w->tiles;
     for (int i = 0; i < t->columns * t->rows; i++) {
         bool above = i >= t->columns && w->active[i - t->columns],
              below = i < t->columns * (t->rows - 1) && w->active[i + t->columns];
@@ -70,32 +75,29 @@ static void grow(work *w)
 
 static bool denoise(work *w, error *e)
 {
-    pass_context *c = w->c;
-    const pass_denoising d = {&w->moments, &w->result, &w->square};
+    pass_denoising d = {.moments = &w->moments, .result = &w->result, .square = &w->square};
     grow(w);
-    go_to(w, w->grown);
-    if (!pass_denoise_across(c, &d, e)) return false;
-    go_to(w, w->active);
-    return pass_denoise_down(c, &d, e);
+    d.tiles = go_to(w, w->grown);
+    if (!pass_denoise_across(w->c, &d, e)) return false;
+    d.tiles = go_to(w, w->active);
+    return pass_denoise_down(w->c, &d, e);
 }
 
 // Squared errors of the tiles.
 static bool measure(work *w, error *e)
 {
-    pass_context *c = w->c;
-    const struct {
-        int size, columns;
-    } params = {c->tiles.size, c->tiles.columns};
-    GLuint program = pass_program(c, "tile_error.comp", NULL, e);
-    if (!program) return false;
-    glUseProgram(program);
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, c->frame_uniforms);
-    gpu_uniforms_set(c->params_uniforms, 1, &params, sizeof params);
-    gpu_bind_image(0, &c->depth, GL_READ_ONLY);
-    gpu_bind_image(2, &w->square, GL_READ_ONLY);
-    gpu_bind_buffer(0, &w->totals);
-    gpu_dispatch(c->g, (GLuint)c->tiles.columns, (GLuint)c->tiles.rows, 1);
-    gpu_buffer_read(c->g, &w->totals, w->read, w->totals.size);
+    const gpu_tiles *t = &w->tiles;
+    const tile_error_params params = {.size = t->size, .columns = t->columns};
+    const pass_call call = {
+        .program = "tile_error",
+        .untimed = true,
+        .groups = {t->columns, t->rows},
+        PASS_PARAMS(params),
+        .reads = {{"error_image", &w->square}},
+        .buffers = {{"Tiles", &w->totals}},
+    };
+    if (!pass_run(w->c, &call, e)) return false;
+    gpu_buffer_read(w->c->g, &w->totals, w->read, w->totals.size);
     return true;
 }
 
@@ -128,8 +130,7 @@ static bool make_room(work *w, error *e)
     w->read = mem_zero(count, sizeof *w->read, e);
     if (!r->last || !w->active || !w->grown || !w->read) return false;
     memcpy(w->active, r->tiles.occupied, count);
-    c->tiles = r->tiles;
-    c->tiles.stop = w->whole.stop;
+    w->tiles = r->tiles;
     return pass_make(c, &c->occlusion, GL_R32F, 1.0f, e) && pass_make(c, &c->change, GL_R32F, 0.0f, e) &&
            pass_make(c, &w->sums, GL_RG32F, 0.0f, e) && pass_make(c, &w->moments, GL_RGBA32F, 0.0f, e) &&
            pass_make(c, &w->result, GL_R32F, 1.0f, e) && pass_make(c, &w->square, GL_R32F, 0.0f, e) &&
@@ -142,18 +143,17 @@ static bool conclude(work *w, error *e)
 {
     pass_context *c = w->c;
     gpu_image t = c->occlusion; // every tile's result is of its last round
-    go_to(w, c->rounds.tiles.occupied);
     c->occlusion = w->result, w->result = t;
     c->denoised = true;
     if (!c->want_error) return true;
-    int radius = c->set.blur;
-    c->set.blur = radius > ERROR_RADIUS ? radius : ERROR_RADIUS;
-    const pass_binding bindings[] = {{2, &w->square, GL_READ_ONLY}};
-    const gpu_image *targets[] = {&c->error};
-    bool ok = pass_blur(c, &w->square, NULL, NULL, e) && pass_make(c, &c->error, GL_R32F, 0.0f, e) &&
-              pass_draw(c, "root", NULL, NULL, 0, bindings, 1, targets, 1, false, e);
-    c->set.blur = radius;
-    return ok;
+    const pass_call call = {
+        .program = "root",
+        .untimed = true,
+        .reads = {{"square_image", &w->square}},
+        .writes = {{"root_out", &c->error}},
+    };
+    int radius = c->set.blur > ERROR_RADIUS ? c->set.blur : ERROR_RADIUS;
+    return pass_blur(c, radius, &w->square, NULL, NULL, e) && pass_make(c, &c->error, GL_R32F, 0.0f, e) && pass_run(c, &call, e);
 }
 
 static void count_samples(pass_rounds *r)
@@ -165,22 +165,22 @@ static void count_samples(pass_rounds *r)
     r->mean_samples = r->tiles.occupied_count ? sum / r->tiles.occupied_count : 0.0;
 }
 
-bool arc_run_rounds(pass_context *c, const char *defines, error *e)
+static bool stopped(const pass_context *c) { return c->stop && *c->stop; }
+
+bool arc_run_rounds(pass_context *c, const char *what, error *e)
 {
-    work w = {.c = c, .whole = c->tiles};
+    work w = {.c = c};
     int timings = c->timing_count, round = 0;
-    pass_timing clock = pass_clock("arc");
-    bool ok = make_room(&w, e), left = c->tiles.occupied_count > 0;
+    pass_timing clock = pass_clock(c, "arc");
+    bool ok = make_room(&w, e), left = w.tiles.occupied_count > 0;
     for (; ok && left; round++) {
-        go_to(&w, w.active);
-        ok = march(&w, defines, round, e) && denoise(&w, e) && measure(&w, e);
-        left = ok && settle(&w, round) && round + 1 < ROUNDS_MAX && samples_after(round + 1) <= c->set.most_samples &&
-               !(c->tiles.stop && *c->tiles.stop);
+        ok = march(&w, what, round, e) && denoise(&w, e) && measure(&w, e);
+        left =
+            ok && settle(&w, round) && round + 1 < ROUNDS_MAX && samples_after(round + 1) <= c->set.most_samples && !stopped(c);
     }
     ok = ok && conclude(&w, e);
     c->rounds.count = round;
     if (ok) count_samples(&c->rounds);
-    c->tiles = w.whole;
     c->timing_count = timings;
     pass_clock_stop(c, clock);
     gpu_image *images[] = {&w.sums, &w.moments, &w.result, &w.square};
@@ -192,27 +192,24 @@ bool arc_run_rounds(pass_context *c, const char *defines, error *e)
     return ok;
 }
 
-bool arc_run_at_rounds(pass_context *c, const char *name, const char *defines, const arc_params *params,
-                       const pass_binding *bindings, int binding_count, error *e)
+bool arc_run_at_rounds(pass_context *c, const pass_call *call, const arc_params *params, error *e)
 {
     const pass_rounds *r = &c->rounds;
-    if (r->count == 0) return pass_run(c, name, defines, params, sizeof *params, bindings, binding_count, false, e);
+    arc_params p = *params;
+    pass_call part = *call;
+    part.params = &p, part.params_size = sizeof p;
+    if (r->count == 0) return pass_run(c, &part, e);
     size_t count = (size_t)r->tiles.columns * (size_t)r->tiles.rows;
-    work w = {.c = c, .whole = c->tiles, .active = mem_zero(count, 1, e)};
-    int timings = c->timing_count;
-    pass_timing clock = pass_clock(name);
+    work w = {.c = c, .tiles = r->tiles, .active = mem_zero(count, 1, e)};
+    pass_timing clock = pass_clock(c, call->label);
     bool ok = w.active != NULL;
-    c->tiles = r->tiles;
-    c->tiles.stop = w.whole.stop;
+    part.untimed = true;
     for (int round = 0; ok && round < r->count; round++) {
-        arc_params p = *params;
         arc_set_grid(&p, arc_round_slices(round), arc_round_steps(round));
         for (size_t i = 0; i < count; i++) w.active[i] = r->tiles.occupied[i] && r->last[i] == round;
-        go_to(&w, w.active);
-        ok = pass_run(c, name, defines, &p, sizeof p, bindings, binding_count, false, e);
+        part.tiles = go_to(&w, w.active);
+        ok = pass_run(c, &part, e);
     }
-    c->tiles = w.whole;
-    c->timing_count = timings;
     pass_clock_stop(c, clock);
     free(w.active);
     return ok;

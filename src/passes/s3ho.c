@@ -4,15 +4,17 @@
 
 #include "base/mem.h"
 #include "light/sh.h"
+#include "passes/params.h"
 #include "passes/pass.h"
+#include "passes/variants.h"
 
 static const double Y00 = 0.28209479177387814;
 
 // Images of the vector: three for l <= 2, five for l <= 3.
 static int images(const pass_context *c) { return c->set.sh_bands == 3 ? SH_IMAGES : 3; }
-static const char *bands(const pass_context *c) { return c->set.sh_bands == 3 ? "BANDS3 1\n" : ""; }
+static const char *bands(const pass_context *c) { return c->set.sh_bands == 3 ? "BANDS3" : ""; }
 
-static void world_rows(const pass_context *c, float rows[3][4])
+static void world_rows(const pass_context *c, vec4 rows[3])
 {
     for (int r = 0; r < 3; r++)
         for (int k = 0; k < 3; k++) rows[r][k] = (float)c->set.world_from_camera.m[r][k];
@@ -22,22 +24,23 @@ static double low_pass(const pass_context *c, int l) { return exp(-0.5 * c->set.
 
 static bool measure(pass_context *c, error *e)
 {
-    struct {
-        float radius, thickness;
-        int samples, seed;
-        float world[3][4], bands[4];
-    } params = {.radius = (float)c->set.radius,
-                .thickness = isinf(c->set.thickness) ? 1e30f : (float)c->set.thickness,
-                .samples = c->set.samples,
-                .seed = c->set.seed,
-                .bands = {(float)low_pass(c, 0), (float)low_pass(c, 1), (float)low_pass(c, 2), (float)low_pass(c, 3)}};
-    world_rows(c, params.world);
-    const pass_binding bindings[] = {{2, &c->sh[0], GL_WRITE_ONLY},
-                                     {3, &c->sh[1], GL_WRITE_ONLY},
-                                     {4, &c->sh[2], GL_WRITE_ONLY},
-                                     {5, &c->sh[3], GL_WRITE_ONLY},
-                                     {6, &c->sh[4], GL_WRITE_ONLY}};
-    return pass_run(c, "s3ho", bands(c), &params, sizeof params, bindings, 5, false, e);
+    s3ho_params params = {.radius = (float)c->set.radius,
+                          .thickness = isinf(c->set.thickness) ? 1e30f : (float)c->set.thickness,
+                          .samples = c->set.samples,
+                          .seed = c->set.seed,
+                          .bands = {(float)low_pass(c, 0), (float)low_pass(c, 1), (float)low_pass(c, 2), (float)low_pass(c, 3)}};
+    world_rows(c, params.world_from_camera);
+    const pass_call call = {
+        .program = "s3ho",
+        .variant = bands(c),
+        PASS_PARAMS(params),
+        .writes = {{"sh0_image", &c->sh[0]},
+                   {"sh1_image", &c->sh[1]},
+                   {"sh2_image", &c->sh[2]},
+                   {"sh3_image", &c->sh[3]},
+                   {"sh4_image", &c->sh[4]}},
+    };
+    return pass_run(c, &call, e);
 }
 
 static bool gather_pattern(pass_context *c, error *e)
@@ -45,11 +48,14 @@ static bool gather_pattern(pass_context *c, error *e)
     gpu_image t[SH_IMAGES] = {{0}};
     bool ok = true;
     for (int k = 0; ok && k < images(c); k++) ok = pass_make(c, &t[k], GL_RGBA32F, 0.0f, e);
-    const pass_binding bindings[] = {{2, &c->sh[0], GL_READ_ONLY}, {3, &c->sh[1], GL_READ_ONLY}, {4, &c->sh[2], GL_READ_ONLY},
-                                     {5, &t[0], GL_WRITE_ONLY},    {6, &t[1], GL_WRITE_ONLY},    {7, &t[2], GL_WRITE_ONLY},
-                                     {8, &c->sh[3], GL_READ_ONLY}, {9, &c->sh[4], GL_READ_ONLY}, {10, &t[3], GL_WRITE_ONLY},
-                                     {11, &t[4], GL_WRITE_ONLY}};
-    ok = ok && pass_run(c, "s3ho_filter", bands(c), NULL, 0, bindings, 10, false, e);
+    const pass_call call = {
+        .program = "s3ho_filter",
+        .variant = bands(c),
+        .reads =
+            {{"sh0_in", &c->sh[0]}, {"sh1_in", &c->sh[1]}, {"sh2_in", &c->sh[2]}, {"sh3_in", &c->sh[3]}, {"sh4_in", &c->sh[4]}},
+        .writes = {{"sh0_out", &t[0]}, {"sh1_out", &t[1]}, {"sh2_out", &t[2]}, {"sh3_out", &t[3]}, {"sh4_out", &t[4]}},
+    };
+    ok = ok && pass_run(c, &call, e);
     for (int k = 0; k < images(c); k++) {
         gpu_image_free(&c->sh[k]);
         c->sh[k] = t[k];
@@ -75,10 +81,8 @@ static bool upload_stored(pass_context *c, error *e)
 static bool light(pass_context *c, error *e)
 {
     static const double a[3] = {M_PI, 2.0 * M_PI / 3.0, M_PI / 4.0};
-    struct {
-        float world[3][4], bands[4], light[SH_MAX][4];
-    } params = {0};
-    world_rows(c, params.world);
+    s3ho_light_params params = {0};
+    world_rows(c, params.world_from_camera);
     for (int l = 0; l < 3; l++) params.bands[l] = (float)(a[l] * low_pass(c, l));
     double in_world[SH_MAX][3] = {{0}};
     const int count = c->set.sh_bands == 3 ? 16 : 9;
@@ -87,15 +91,22 @@ static bool light(pass_context *c, error *e)
         for (int k = 0; k < 3; k++) params.light[i][k] = (float)in_world[i][k];
         if (c->env) log_info(c->log, "environment L_%d: %.6g %.6g %.6g", i, in_world[i][0], in_world[i][1], in_world[i][2]);
     }
-    char defines[64] = "";
-    strcat(defines, bands(c));
-    if (c->want_radiance) strcat(defines, "LIGHT 1\n");
-    if (c->want_visibility) strcat(defines, "VISIBILITY 1\n");
-    const pass_binding bindings[] = {{2, &c->sh[0], GL_READ_ONLY},     {3, &c->sh[1], GL_READ_ONLY},
-                                     {4, &c->sh[2], GL_READ_ONLY},     {5, &c->occlusion, GL_WRITE_ONLY},
-                                     {6, &c->radiance, GL_WRITE_ONLY}, {7, &c->visibility, GL_WRITE_ONLY},
-                                     {8, &c->sh[3], GL_READ_ONLY},     {9, &c->sh[4], GL_READ_ONLY}};
-    return pass_run(c, "s3ho_light", defines, &params, sizeof params, bindings, 8, false, e);
+    variant v = {{0}};
+    variant_add(&v, c->set.sh_bands == 3, "BANDS3");
+    variant_add(&v, c->want_radiance, "LIGHT");
+    variant_add(&v, c->want_visibility, "VISIBILITY");
+    const pass_call call = {
+        .program = "s3ho_light",
+        .variant = v.words,
+        PASS_PARAMS(params),
+        .reads = {{"sh0_image", &c->sh[0]},
+                  {"sh1_image", &c->sh[1]},
+                  {"sh2_image", &c->sh[2]},
+                  {"sh3_image", &c->sh[3]},
+                  {"sh4_image", &c->sh[4]}},
+        .writes = {{"occlusion_image", &c->occlusion}, {"radiance_image", &c->radiance}, {"visibility_image", &c->visibility}},
+    };
+    return pass_run(c, &call, e);
 }
 
 bool pass_s3ho(pass_context *c, error *e)

@@ -1,7 +1,8 @@
 #include "passes/ssdo.h"
 
 #include <math.h>
-#include <stdio.h>
+
+#include "passes/variants.h"
 
 ssdo_params ssdo_params_of(const pass_context *c)
 {
@@ -18,13 +19,18 @@ ssdo_params ssdo_params_of(const pass_context *c)
 
 bool pass_ssdo(pass_context *c, error *e)
 {
-    ssdo_params params = ssdo_params_of(c);
-    char defines[64];
-    snprintf(defines, sizeof defines, "%s%s", c->want_radiance ? "LIGHT 1\n" : "", c->want_visibility ? "VISIBILITY 1\n" : "");
+    const ssdo_params params = ssdo_params_of(c);
+    variant v = {{0}};
+    variant_add(&v, c->want_radiance, "LIGHT");
+    variant_add(&v, c->want_visibility, "VISIBILITY");
     if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e)) return false;
     if (c->want_radiance && !pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e)) return false;
     if (c->want_visibility && !pass_make(c, &c->visibility, GL_R32F, 1.0f, e)) return false;
-    const pass_binding bindings[] = {
-        {2, &c->occlusion, GL_WRITE_ONLY}, {3, &c->radiance, GL_WRITE_ONLY}, {4, &c->visibility, GL_WRITE_ONLY}};
-    return pass_run(c, "ssdo", defines, &params, sizeof params, bindings, 3, false, e);
+    const pass_call call = {
+        .program = "ssdo",
+        .variant = v.words,
+        PASS_PARAMS(params),
+        .writes = {{"occlusion_image", &c->occlusion}, {"radiance_image", &c->radiance}, {"visibility_image", &c->visibility}},
+    };
+    return pass_run(c, &call, e);
 }

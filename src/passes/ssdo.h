@@ -1,15 +1,9 @@
-// The parameter block that ssdo.comp and ssdo_bounce.comp share (shaders/include/ssdo.glsl).
+// What the direct pass of SSDO and its bounce share: shaders/params/ssdo.glsl.
 #ifndef SSDO_PASSES_SSDO_H
 #define SSDO_PASSES_SSDO_H
 
+#include "passes/params.h"
 #include "passes/pass.h"
-
-typedef struct ssdo_params {
-    float radius, thickness;
-    int samples, seed;
-    float level, strength;
-    int exitant, unused;
-} ssdo_params;
 
 ssdo_params ssdo_params_of(const pass_context *c);
 

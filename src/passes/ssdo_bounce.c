@@ -6,9 +6,11 @@ bool pass_ssdo_bounce(pass_context *c, error *e)
     bool exitant = !c->set.relight;
     ssdo_params params = ssdo_params_of(c);
     params.exitant = exitant;
-    if (!pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e)) return false;
-    const pass_binding bindings[] = {{2, exitant ? &c->beauty : &c->radiance, GL_READ_ONLY},
-                                     {3, exitant ? &c->beauty : &c->albedo, GL_READ_ONLY},
-                                     {4, &c->indirect, GL_WRITE_ONLY}};
-    return pass_run(c, "ssdo_bounce", NULL, &params, sizeof params, bindings, 3, false, e);
+    const pass_call call = {
+        .program = "ssdo_bounce",
+        PASS_PARAMS(params),
+        .reads = {{"sender_image", exitant ? &c->beauty : &c->radiance}, {"albedo_image", exitant ? &c->beauty : &c->albedo}},
+        .writes = {{"indirect_image", &c->indirect}},
+    };
+    return pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e) && pass_run(c, &call, e);
 }

@@ -42,8 +42,8 @@ static void put_box(const pass_context *c, mat3 map_from_camera, arc_params *p)
         j.low[0] = v3(fmin(j.low[0].x, j.low[i].x), fmin(j.low[0].y, j.low[i].y), fmin(j.low[0].z, j.low[i].z));
         j.high[0] = v3(fmax(j.high[0].x, j.high[i].x), fmax(j.high[0].y, j.high[i].y), fmax(j.high[0].z, j.high[i].z));
     }
-    arc_put(p->box[0], j.low[0], 0);
-    arc_put(p->box[1], j.high[0], 0);
+    arc_put(p->box_low, j.low[0], 0);
+    arc_put(p->box_high, j.high[0], 0);
 }
 
 static void put_suns(const pass_context *c, arc_params *p)
@@ -72,11 +72,20 @@ bool pass_suns(pass_context *c, error *e)
     params.inverse_steps = 1.0f / (float)params.steps;
     put_suns(c, &params);
     gpu_image light = {0};
-    const pass_binding march[] = {{3, &light, GL_WRITE_ONLY}, {6, &c->surface, GL_READ_ONLY}};
-    const pass_binding add[] = {{2, &c->visibility, GL_READ_WRITE}, {3, &light, GL_READ_ONLY}, {4, &c->radiance, GL_READ_WRITE}};
-    bool ok = pass_make(c, &light, GL_RGBA32F, 0.0f, e) &&
-              pass_run(c, "suns", NULL, &params, sizeof params, march, 2, false, e) &&
-              pass_run(c, "suns_add", c->visibility.id ? "VISIBILITY 1\n" : NULL, &params, sizeof params, add, 3, false, e);
+    const pass_call march = {
+        .program = "suns",
+        PASS_PARAMS(params),
+        .reads = {{"surface_image", &c->surface}},
+        .writes = {{"sun_image", &light}},
+    };
+    const pass_call add = {
+        .program = "suns_add",
+        .variant = c->visibility.id ? "VISIBILITY" : NULL,
+        PASS_PARAMS(params),
+        .reads = {{"sun_image", &light}},
+        .writes = {{"scalar_image", &c->visibility}, {"light_image", &c->radiance}},
+    };
+    bool ok = pass_make(c, &light, GL_RGBA32F, 0.0f, e) && pass_run(c, &march, e) && pass_run(c, &add, e);
     gpu_image_free(&light);
     c->suns_apart = !ok;
     return ok;

@@ -8,6 +8,9 @@
 #include "base/mem.h"
 #include "gbuffer/mesh.h"
 
+_Static_assert(GRID_COUNT == GRID_LEVELS && HIT_NOTHING == TRACE_MISS && HIT_NO_RAY == TRACE_NO_RAY,
+               "shaders/include/constants.glsl");
+
 enum { FIRST_CHUNK = 1024, SMALLEST_CHUNK = 64, LARGEST_CHUNK = 1 << 20 };
 static const double WANTED_MS = 15.0; // of a dispatch: far below what any watchdog minds
 
@@ -60,21 +63,15 @@ static bool upload_triangles(trace_scene *s, gpu *g, const obj_mesh *m, const fl
 
 static bool open_grid(trace_scene *s, gpu *g, const float *vertices, const obj_mesh *m, error *e)
 {
-    struct {
-        float low[4], cell[4];
-        int size[4];
-    } block[GRID_LEVELS] = {0};
     grid made;
     if (!grid_make(vertices, m->triangles[0], m->triangle_count, &made, e)) return false;
     for (int l = 0; l < GRID_LEVELS; l++) {
         const grid_level *level = &made.level[l];
-        memcpy(block[l].low, level->low, sizeof level->low);
-        memcpy(block[l].cell, level->cell, sizeof level->cell);
-        memcpy(block[l].size, level->size, sizeof level->size);
-        block[l].size[3] = (int)level->first;
+        memcpy(s->grid.low[l], level->low, sizeof level->low);
+        memcpy(s->grid.cell[l], level->cell, sizeof level->cell);
+        memcpy(s->grid.size[l], level->size, sizeof level->size);
+        s->grid.size[l][3] = (int)level->first;
     }
-    s->grid_uniforms = gpu_uniforms_make(sizeof block);
-    gpu_uniforms_set(s->grid_uniforms, 1, block, sizeof block);
     s->chunk = FIRST_CHUNK;
     bool ok =
         gpu_buffer_make(g, &s->offsets, made.offsets, (made.offset_count + 1) * sizeof *made.offsets, "the mesh's grid", e) &&
@@ -124,7 +121,6 @@ void trace_scene_close(trace_scene *s)
     gpu_buffer_free(&s->offsets);
     gpu_buffer_free(&s->items);
     gpu_buffer_free(&s->choices);
-    gpu_uniforms_free(s->grid_uniforms);
     free(s->rays);
     free(s->hits);
     free(s->path);
@@ -163,34 +159,31 @@ static size_t next_chunk(size_t n, double took)
     return chunk < SMALLEST_CHUNK ? SMALLEST_CHUNK : chunk > LARGEST_CHUNK ? LARGEST_CHUNK : (size_t)chunk;
 }
 
-static bool send_to_grid(trace_scene *s, gpu *g, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e)
+static bool send_to_grid(trace_scene *s, pass_context *c, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e)
 {
-    GLuint program = gpu_program(g, "trace_grid.comp", NULL, e);
-    if (!program) return false;
-    glUseProgram(program);
-    glBindBufferBase(GL_UNIFORM_BUFFER, 1, s->grid_uniforms);
-    gpu_bind_buffer(0, rays);
-    gpu_bind_buffer(1, hits);
-    gpu_bind_buffer(3, &s->triangles);
-    gpu_bind_buffer(4, &s->offsets);
-    gpu_bind_buffer(5, &s->items);
-    gpu_barrier(g, GL_SHADER_STORAGE_BARRIER_BIT);
     for (size_t first = 0, n; first < count; first += n) {
         double start = milliseconds();
         n = count - first < s->chunk ? count - first : s->chunk;
-        glUniform4i(0, (GLint)first, (GLint)(first + n), 0, 0);
-        gpu_dispatch(g, (GLuint)(n + 63) / 64, 1, 1);
+        const pass_call call = {
+            .program = "trace_grid",
+            .untimed = true,
+            .groups = {(int)((n + 63) / 64), 1},
+            .range = {(int)first, (int)(first + n)},
+            PASS_PARAMS(s->grid),
+            .buffers =
+                {{"Rays", rays}, {"Hits", hits}, {"Triangles", &s->triangles}, {"Offsets", &s->offsets}, {"Items", &s->items}},
+        };
+        if (!pass_run(c, &call, e)) return false;
         glFinish();
         double took = milliseconds() - start;
         if (n == s->chunk || took > WANTED_MS) s->chunk = next_chunk(n, took);
     }
-    gpu_barrier(g, GL_SHADER_STORAGE_BARRIER_BIT);
     return true;
 }
 
 void trace_longer_rays(trace_scene *s) { s->chunk = FIRST_CHUNK; }
 
-bool trace_send(trace_scene *s, gpu *g, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e)
+bool trace_send(trace_scene *s, pass_context *c, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e)
 {
-    return s->cpu ? send_to_embree(s, g, rays, hits, count, e) : send_to_grid(s, g, rays, hits, count, e);
+    return s->cpu ? send_to_embree(s, c->g, rays, hits, count, e) : send_to_grid(s, c, rays, hits, count, e);
 }

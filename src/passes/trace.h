@@ -7,6 +7,8 @@
 #include "base/vec.h"
 #include "gpu/gpu.h"
 #include "passes/grid.h"
+#include "passes/params.h"
+#include "passes/pass.h"
 #include "plugin/trace.h"
 
 typedef enum trace_backend { TRACE_AUTO, TRACE_EMBREE, TRACE_GPU } trace_backend; // auto: Embree if its module is there
@@ -20,7 +22,7 @@ typedef struct trace_scene {
     gpu_buffer triangles; // corner, edge, edge; w: albedo (shaders/include/rays.glsl)
     trace_cpu *cpu;       // Embree; NULL: the grid
     gpu_buffer offsets, items;
-    GLuint grid_uniforms;
+    trace_grid_params grid;
     size_t chunk;    // rays of the grid's next dispatch, such that it takes a few ten milliseconds
     trace_ray *rays; // Embree's copies, owned
     trace_hit *hits;
@@ -35,7 +37,7 @@ bool trace_scene_open(trace_scene *s, gpu *g, const char *path, trace_backend ba
 void trace_scene_close(trace_scene *s);
 
 // Fills hits[0 .. count - 1] with what rays[0 .. count - 1] meet (plugin/trace_abi.h's layouts). Waits for the result.
-bool trace_send(trace_scene *s, gpu *g, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e);
+bool trace_send(trace_scene *s, pass_context *c, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e);
 
 // Says that the next rays are longer than the last ones, so that the grid begins with few of them again.
 void trace_longer_rays(trace_scene *s);

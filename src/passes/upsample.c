@@ -1,6 +1,6 @@
-#include <stdio.h>
-
+#include "passes/params.h"
 #include "passes/pass.h"
+#include "passes/variants.h"
 
 // A surface may bend by this many footprints of a small pixel off the pixel's tangent plane before a tap loses weight.
 static const float SHARPNESS = 0.5f;
@@ -14,27 +14,28 @@ typedef struct draw {
 
 static bool bring(pass_context *c, const pass_context *small, const draw *d, error *e)
 {
-    struct {
-        int size[2];
-        float sharpness;
-        int unused;
-        float light[9][4];
-    } params = {.size = {small->width, small->height}, .sharpness = SHARPNESS};
+    upsample_params params = {.small_size = {small->width, small->height}, .sharpness = SHARPNESS};
     for (int i = 0; d->open_light && i < 9; i++)
         for (int k = 0; k < 3; k++) params.light[i][k] = (float)(small->suns_apart ? c->sunless->rest[i][k] : c->env->sh[i][k]);
-    pass_binding bindings[6] = {{2, &small->depth, GL_READ_ONLY}, {3, &small->normal, GL_READ_ONLY}};
-    char defines[64];
-    int count = 2;
-    for (int k = 0; k < 4; k++) {
-        if (!d->from[k]) continue;
-        if (!pass_make(c, d->to[k], k < 2 ? GL_R32F : GL_RGBA32F, k < 2 ? 1.0f : 0.0f, e)) return false;
-        bindings[count++] = (pass_binding){4 + k, d->from[k], GL_READ_ONLY};
-    }
-    snprintf(defines, sizeof defines, "SCALARS %d\nCOLOURS %d\n%s", (d->from[0] != NULL) + (d->from[1] != NULL),
-             (d->from[2] != NULL) + (d->from[3] != NULL), d->open_light ? "OPEN_LIGHT 1\n" : "");
-    const gpu_image *targets[4];
-    for (int k = 0; k < 4; k++) targets[k] = d->from[k] ? d->to[k] : NULL;
-    return pass_draw(c, "upsample", defines, &params, sizeof params, bindings, count, targets, 4, false, e);
+    for (int k = 0; k < 4; k++)
+        if (d->from[k] && !pass_make(c, d->to[k], k < 2 ? GL_R32F : GL_RGBA32F, k < 2 ? 1.0f : 0.0f, e)) return false;
+    variant v = {{0}};
+    variant_number(&v, "SCALARS", (d->from[0] != NULL) + (d->from[1] != NULL));
+    variant_number(&v, "COLOURS", (d->from[2] != NULL) + (d->from[3] != NULL));
+    variant_add(&v, d->open_light, "OPEN_LIGHT");
+    const pass_call call = {
+        .program = "upsample",
+        .variant = v.words,
+        PASS_PARAMS(params),
+        .reads = {{"small_depth", &small->depth},
+                  {"small_normal", &small->normal},
+                  {"scalar0_in", d->from[0]},
+                  {"scalar1_in", d->from[1]},
+                  {"colour0_in", d->from[2]},
+                  {"colour1_in", d->from[3]}},
+        .writes = {{"scalar0_out", d->to[0]}, {"scalar1_out", d->to[1]}, {"colour0_out", d->to[2]}, {"colour1_out", d->to[3]}},
+    };
+    return pass_run(c, &call, e);
 }
 
 bool pass_upsample(pass_context *c, const pass_context *small, error *e)

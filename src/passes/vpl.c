@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "passes/params.h"
 #include "passes/pass.h"
 
 // A surface seen at less than 3 degrees is taken to be seen at 3: rounding of the normal would else decide its area.
@@ -132,17 +133,18 @@ static bool choose(pass_context *c, vpl *lights, int *count, error *e)
 
 bool pass_vpl(pass_context *c, error *e)
 {
-    struct {
-        float strength;
-        int count, unused[2];
-    } params = {.strength = (float)c->set.bounce_strength};
+    vpl_params params = {.strength = (float)c->set.bounce_strength};
     gpu_image image = {0};
     vpl *lights = mem_zero((size_t)c->set.vpl_count, sizeof *lights, e);
     bool ok = lights && pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e) && choose(c, lights, &params.count, e);
     if (ok && params.count > 0) {
-        const pass_binding bindings[] = {{2, &image, GL_READ_ONLY}, {3, &c->indirect, GL_WRITE_ONLY}};
-        ok =
-            upload(c, lights, params.count, &image, e) && pass_run(c, "vpl", NULL, &params, sizeof params, bindings, 2, false, e);
+        const pass_call call = {
+            .program = "vpl",
+            PASS_PARAMS(params),
+            .reads = {{"lights_image", &image}},
+            .writes = {{"indirect_image", &c->indirect}},
+        };
+        ok = upload(c, lights, params.count, &image, e) && pass_run(c, &call, e);
     }
     gpu_image_free(&image);
     free(lights);

@@ -19,11 +19,11 @@ static bool (*bounce_of(const plan *p))(pass_context *, error *)
 }
 
 // Whether the method's own loop makes the bounce: arc's, if it is not its own light that bounces.
-static bool bounces_itself(const pass_context *c, const plan *p)
+static bool bounces_itself(const pass_settings *set, const plan *p)
 {
     if (!p->bounce) return false;
     return bounce_of(p) == pass_raytrace_bounce ||
-           (bounce_of(p) == pass_arc_bounce && p->method->run == pass_arc && !c->set.relight);
+           (bounce_of(p) == pass_arc_bounce && p->method->run == pass_arc && !set->relight);
 }
 
 // What the method itself makes, filtered: linear quantities all.
@@ -33,8 +33,9 @@ static bool run_method(pass_context *c, const plan *p, error *e)
     if (!p->blur) return true;
     if (c->change.id && !c->denoised && !pass_denoise(c, e)) return false;
     gpu_image *plain = c->denoised ? NULL : &c->occlusion;
-    if ((plain || c->visibility.id || c->radiance.id) && !pass_blur(c, plain, &c->visibility, &c->radiance, e)) return false;
-    return !c->bent.id || pass_blur(c, NULL, NULL, &c->bent, e);
+    if ((plain || c->visibility.id || c->radiance.id) && !pass_blur(c, c->set.blur, plain, &c->visibility, &c->radiance, e))
+        return false;
+    return !c->bent.id || pass_blur(c, c->set.blur, NULL, NULL, &c->bent, e);
 }
 
 static bool finish_light(pass_context *c, const plan *p, error *e)
@@ -50,7 +51,7 @@ static bool run_bounce(pass_context *c, const plan *p, error *e)
     if (!p->bounce) return true;
     if (!bounce_of(p)(c, e)) return false;
     // The virtual lights are the same for all pixels: no noise. A method that filters itself does not filter the bounce.
-    return c->set.blur == 0 || bounce_of(p) == pass_vpl || pass_blur(c, NULL, NULL, &c->indirect, e);
+    return c->set.blur == 0 || bounce_of(p) == pass_vpl || pass_blur(c, c->set.blur, NULL, NULL, &c->indirect, e);
 }
 
 // The times of the small frame's passes belong to the frame.
@@ -73,20 +74,10 @@ static bool halve(const job *j, frame_result *r, error *e)
 
 static bool run_half(pass_context *c, const gbuffer *half, const plan *p, error *e)
 {
-    pass_context small;
     pass_settings set = c->set;
     set.blur = (set.blur + 1) / 2; // as wide on the surface as at full size
-    if (!pass_begin(&small, c->g, half, c->env, &set, c->timing, c->log, e)) return false;
-    small.tiles.stop = c->tiles.stop;
-    small.environment = c->environment;
-    small.sunless = c->sunless;
-    small.trace = c->trace;
-    small.want_indirect = c->want_indirect;
-    small.proxies = c->proxies;
-    small.threads = c->threads;
-    small.want_radiance = c->want_radiance;
-    small.want_visibility = c->want_visibility;
-    small.want_bent = c->want_bent;
+    pass_context small = pass_like(c, half, &set);
+    if (!pass_begin(&small, e)) return false;
     bool ok = run_method(&small, p, e);
     // All layers go up together, unless the bounce needs what is done to them at either size.
     bool early =
@@ -152,29 +143,36 @@ static void take_counts(frame_result *r, const pass_context *c)
 
 bool filter_begin(job *j, frame_result *r, error *e)
 {
-    pass_context c;
     if (!filter_prepare(j, r, e)) return false;
     stopwatch t = stopwatch_start();
     const gpu_counts before = j->g.counts;
     const double wall = r->wall_ms[STAGE_CONVERT], cpu = r->cpu_ms[STAGE_CONVERT];
-    const environment *env = j->env_loaded ? &j->env : NULL;
+    const plan *p = &r->plan;
     gbuffer gb = r->gb; // borrows its arrays
     if (r->uncovered) gb.coverage = NULL;
-    if (!pass_begin(&c, &j->g, &gb, env, &r->set, j->o->report != NULL, j->log, e)) return false;
-    c.environment = j->env_image;
-    c.sunless = &j->sunless;
-    c.trace = &j->trace;
-    c.want_indirect = bounces_itself(&c, &r->plan);
-    c.proxies = &r->proxies;
-    c.threads = j->threads;
-    c.want_radiance = r->plan.want_radiance;
-    c.want_bent = r->plan.want_bent;
-    c.want_error = r->plan.want_error;
-    c.want_visibility = r->plan.want_visibility && r->plan.method->fills_radiance;
+    pass_context c = {
+        .g = &j->g,
+        .log = j->log,
+        .timing = j->o->report != NULL,
+        .threads = j->threads,
+        .stop = j->stop,
+        .set = r->set,
+        .want_diffuse = p->layers & 1u << LAYER_DIFFUSE,
+        .want_bent = p->want_bent,
+        .want_error = p->want_error,
+        .want_indirect = bounces_itself(&r->set, p),
+        .want_radiance = p->want_radiance,
+        .want_visibility = p->want_visibility && p->method->fills_radiance,
+        .gb = &gb,
+        .env = j->env_loaded ? &j->env : NULL,
+        .environment = j->env_image,
+        .proxies = &r->proxies,
+        .sunless = &j->sunless,
+        .trace = &j->trace,
+    };
     for (int k = 0; k < SH_IMAGES; k++) c.stored_sh[k] = r->stored_sh[k];
-    c.tiles.stop = j->stop;
-    c.want_diffuse = r->plan.layers & 1u << LAYER_DIFFUSE;
-    bool ok = run_passes(&c, &r->half, &r->plan, e) && gpu_finish(&j->g, "the passes", e);
+    if (!pass_begin(&c, e)) return false;
+    bool ok = run_passes(&c, &r->half, p, e) && gpu_finish(&j->g, "the passes", e);
     stopwatch_add(&t, &r->wall_ms[STAGE_PASSES], &r->cpu_ms[STAGE_PASSES]);
     ok = ok && !job_stopped(j) && read_back_begin(j, &c, r, e);
     stopwatch_add(&t, &r->wall_ms[STAGE_READ_BACK], &r->cpu_ms[STAGE_READ_BACK]);

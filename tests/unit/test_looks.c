@@ -301,15 +301,14 @@ static void occlusion_is_multiplied_onto_all(void **state)
 
 static void relit_composite(rig *r, gbuffer *gb, bool all, double amount, float *occlusion, float *specular, float *composite)
 {
-    pass_context c;
     error e = {0};
     pass_settings set = rig_settings(method_find("hemisphere"), 0.5);
     set.samples = 16;
     set.multiply_all = all;
     set.amount = amount;
     set.world_from_camera = m3_identity();
-    must(pass_begin(&c, &r->job.g, gb, &r->job.env, &set, false, &r->log, &e), &e);
-    c.environment = r->job.env_image;
+    pass_context c = {.g = &r->job.g, .log = &r->log, .set = set, .gb = gb, .env = &r->job.env, .environment = r->job.env_image};
+    must(pass_begin(&c, &e), &e);
     must(pass_hemisphere(&c, &e) && pass_irradiance(&c, &e) && pass_specular(&c, &e) && pass_composite(&c, &e), &e);
     gpu_image_download(c.g, &c.occlusion, occlusion);
     gpu_image_download(c.g, &c.specular, specular);

@@ -1,27 +1,22 @@
 #version 450 core
-// lint: SCALARS=2 COLOURS=1 | SCALARS=1 COLOURS=0 | SCALARS=0 COLOURS=1
 // One direction of a separable bilateral filter (include/bilateral.glsl) on linear quantities; weights are always divided out.
 // SCALARS and COLOURS say how many r32f and rgba32f images go through together.
 #include "include/frame.glsl"
 #include "include/bilateral.glsl"
 
-layout(std140, binding = 1) uniform Params {
-    ivec2 step; // (1,0) or (0,1)
-    int radius; // pixels
-    float sharpness; // plane distance, in footprints, at which the weight has fallen to exp(-1/2)
-} params;
+#include "params/blur.glsl"
 
 #if SCALARS > 0
-layout(r32f, binding = 2) readonly uniform image2D scalar0_in;
-layout(location = 0) out float scalar0_out;
+PICTURE(r32f, scalar0_in);
+TARGET(0, float, r32f, scalar0_out);
 #endif
 #if SCALARS > 1
-layout(r32f, binding = 4) readonly uniform image2D scalar1_in;
-layout(location = 1) out float scalar1_out;
+PICTURE(r32f, scalar1_in);
+TARGET(1, float, r32f, scalar1_out);
 #endif
 #if COLOURS > 0
-layout(rgba32f, binding = 6) readonly uniform image2D colour0_in;
-layout(location = 2) out vec4 colour0_out;
+PICTURE(rgba32f, colour0_in);
+TARGET(2, vec4, rgba32f, colour0_out);
 #endif
 
 struct Values { float scalar0, scalar1; vec3 colour0; };
@@ -29,35 +24,34 @@ struct Values { float scalar0, scalar1; vec3 colour0; };
 Values load(ivec2 p) {
     Values v = Values(0.0, 0.0, vec3(0.0));
 #if SCALARS > 0
-    v.scalar0 = imageLoad(scalar0_in, p).r;
+    v.scalar0 = FETCH(scalar0_in, p).r;
 #endif
 #if SCALARS > 1
-    v.scalar1 = imageLoad(scalar1_in, p).r;
+    v.scalar1 = FETCH(scalar1_in, p).r;
 #endif
 #if COLOURS > 0
-    v.colour0 = imageLoad(colour0_in, p).rgb;
+    v.colour0 = FETCH(colour0_in, p).rgb;
 #endif
     return v;
 }
 
-void store(Values v) {
+void store(ivec2 p, Values v) {
 #if SCALARS > 0
-    scalar0_out = v.scalar0;
+    PUT(scalar0_out, p, v.scalar0);
 #endif
 #if SCALARS > 1
-    scalar1_out = v.scalar1;
+    PUT(scalar1_out, p, v.scalar1);
 #endif
 #if COLOURS > 0
-    colour0_out = vec4(v.colour0, 0.0);
+    PUT(colour0_out, p, vec4(v.colour0, 0.0));
 #endif
 }
 
-void main() {
-    ivec2 p = this_pixel();
+void blur(ivec2 p) {
     Values centre = load(p);
     float depth = depth_at(p);
     if (depth == 0.0) {
-        store(centre);
+        store(p, centre);
         return;
     }
     Centre c = centre_at(p, depth, params.sharpness, params.radius);
@@ -75,5 +69,7 @@ void main() {
         sum.colour0 += w * (v.colour0 - centre.colour0);
         total += w;
     }
-    store(Values(centre.scalar0 + sum.scalar0 / total, centre.scalar1 + sum.scalar1 / total, centre.colour0 + sum.colour0 / total));
+    store(p, Values(centre.scalar0 + sum.scalar0 / total, centre.scalar1 + sum.scalar1 / total, centre.colour0 + sum.colour0 / total));
 }
+
+DRAWN_OR_DISPATCHED(blur)

@@ -1,8 +1,7 @@
 #version 450 core
-// lint: SCALARS=2 COLOURS=2 OPEN_LIGHT | SCALARS=1 COLOURS=1 OPEN_LIGHT | SCALARS=1 COLOURS=0 | SCALARS=0 COLOURS=1
 // Layers of a frame of half the size (src/gbuffer/half.h) brought to the full one: a bilinear mean over the four nearest small pixels, each
 // weighing less the further it lies off the pixel's tangent plane, in small footprints, and the more its normal differs (as in
-// blur.frag). Where none of the four is on the pixel's surface, the best of sixteen is taken as it is; where no surface is near at all
+// blur.comp). Where none of the four is on the pixel's surface, the best of sixteen is taken as it is; where no surface is near at all
 // (a speck seen edge-on) the pixel is open, and with OPEN_LIGHT the light of colour 0 is the SH irradiance / pi.
 // SCALARS and COLOURS say how many r32f and rgba32f images go through together.
 #include "include/frame.glsl"
@@ -10,33 +9,28 @@
 #include "include/environment.glsl"
 #endif
 
-layout(std140, binding = 1) uniform Params {
-    ivec2 small_size;
-    float sharpness; // plane distance, in footprints of a small pixel, at which the weight has fallen to exp(-1/2)
-    int unused;
-    vec4 light[9]; // OPEN_LIGHT: radiance coefficients of what makes colour 0
-} params;
+#include "params/upsample.glsl"
 // Copies made before main: llvmpipe reads a uniform inside any control flow once for every lane.
 ivec2 small_size = ivec2(params.small_size.x, params.small_size.y);
 float sharpness = params.sharpness;
 
-layout(r32f, binding = 2) readonly uniform image2D small_depth;
-layout(rgba32f, binding = 3) readonly uniform image2D small_normal;
+PICTURE(r32f, small_depth);
+PICTURE(rgba32f, small_normal);
 #if SCALARS > 0
-layout(r32f, binding = 4) readonly uniform image2D scalar0_in;
-layout(location = 0) out float scalar0_out;
+PICTURE(r32f, scalar0_in);
+TARGET(0, float, r32f, scalar0_out);
 #endif
 #if SCALARS > 1
-layout(r32f, binding = 5) readonly uniform image2D scalar1_in;
-layout(location = 1) out float scalar1_out;
+PICTURE(r32f, scalar1_in);
+TARGET(1, float, r32f, scalar1_out);
 #endif
 #if COLOURS > 0
-layout(rgba32f, binding = 6) readonly uniform image2D colour0_in;
-layout(location = 2) out vec4 colour0_out;
+PICTURE(rgba32f, colour0_in);
+TARGET(2, vec4, rgba32f, colour0_out);
 #endif
 #if COLOURS > 1
-layout(rgba32f, binding = 7) readonly uniform image2D colour1_in;
-layout(location = 3) out vec4 colour1_out;
+PICTURE(rgba32f, colour1_in);
+TARGET(3, vec4, rgba32f, colour1_out);
 #endif
 
 struct Values { float scalar0, scalar1; vec4 colour0, colour1; };
@@ -45,44 +39,44 @@ const Values OPEN = Values(1.0, 1.0, vec4(0.0), vec4(0.0)), ZERO = Values(0.0, 0
 Values load(ivec2 q) {
     Values v = ZERO;
 #if SCALARS > 0
-    v.scalar0 = imageLoad(scalar0_in, q).r;
+    v.scalar0 = FETCH(scalar0_in, q).r;
 #endif
 #if SCALARS > 1
-    v.scalar1 = imageLoad(scalar1_in, q).r;
+    v.scalar1 = FETCH(scalar1_in, q).r;
 #endif
 #if COLOURS > 0
-    v.colour0 = imageLoad(colour0_in, q);
+    v.colour0 = FETCH(colour0_in, q);
 #endif
 #if COLOURS > 1
-    v.colour1 = imageLoad(colour1_in, q);
+    v.colour1 = FETCH(colour1_in, q);
 #endif
     return v;
 }
 
-void store(Values v) {
+void store(ivec2 p, Values v) {
 #if SCALARS > 0
-    scalar0_out = v.scalar0;
+    PUT(scalar0_out, p, v.scalar0);
 #endif
 #if SCALARS > 1
-    scalar1_out = v.scalar1;
+    PUT(scalar1_out, p, v.scalar1);
 #endif
 #if COLOURS > 0
-    colour0_out = v.colour0;
+    PUT(colour0_out, p, v.colour0);
 #endif
 #if COLOURS > 1
-    colour1_out = v.colour1;
+    PUT(colour1_out, p, v.colour1);
 #endif
 }
 
 float small_depth_at(ivec2 q) {
     bool inside = all(greaterThanEqual(q, ivec2(0))) && all(lessThan(q, small_size));
-    return inside ? imageLoad(small_depth, q).r : 0.0;
+    return inside ? FETCH(small_depth, q).r : 0.0;
 }
 
 // How well a small pixel's surface agrees with the plane (P, N): 1 on it, 0 far from it.
 float agreement(ivec2 q, float depth, vec3 P, vec3 N, float scale) {
     float off_plane = dot(N, position_at(2.0 * (vec2(q) + 0.5), depth) - P) * scale;
-    return exp(-0.5 * off_plane * off_plane) * pow(max(0.0, dot(N, imageLoad(small_normal, q).xyz)), 8.0);
+    return exp(-0.5 * off_plane * off_plane) * pow(max(0.0, dot(N, FETCH(small_normal, q).xyz)), 8.0);
 }
 
 // The small pixel of 4 x 4 that agrees best, by a measure that still tells far ones apart; negative if none holds a surface, or if it is
@@ -97,7 +91,7 @@ ivec2 best_of(ivec2 base, vec3 P, vec3 N, float scale, bool wanted) {
             float depth = small_depth_at(q);
             if (depth == 0.0) continue;
             float off_plane = abs(dot(N, position_at(2.0 * (vec2(q) + 0.5), depth) - P)) * scale;
-            float cost = min(off_plane, 1e6) + 4.0 * (1.0 - dot(N, imageLoad(small_normal, q).xyz));
+            float cost = min(off_plane, 1e6) + 4.0 * (1.0 - dot(N, FETCH(small_normal, q).xyz));
             if (cost < least) {
                 least = cost;
                 best = q;
@@ -117,8 +111,7 @@ Values lost(ivec2 base, vec3 P, vec3 N, float scale, bool wanted) {
     return v;
 }
 
-void main() {
-    ivec2 p = this_pixel();
+void upsample(ivec2 p) {
     float depth = depth_at(p);
     vec3 P = position_of(p, depth), N = normal_at(p);
     float scale = 1.0 / (sharpness * 2.0 * footprint(depth));
@@ -153,5 +146,7 @@ void main() {
     bool wanted = depth != 0.0 && total <= 1e-3;
     Values other = lost(base, P, N, scale, wanted);
     if (wanted) start = other;
-    store(start);
+    store(p, start);
 }
+
+DRAWN_OR_DISPATCHED(upsample)

@@ -1,5 +1,4 @@
 #version 450 core
-// lint: ACROSS | ERRORS | NOTHING
 // A filter that knows the noise it is to remove. From the edge-aware means (include/bilateral.glsl) over a window of the estimate m,
 // of its `change` c when the other half of the slices came in, and of their squares it takes
 //   S = mean(m^2) - mean(m)^2   the variance in the window, of noise and of the picture
@@ -13,36 +12,32 @@
 #include "include/frame.glsl"
 #include "include/bilateral.glsl"
 
-layout(std140, binding = 1) uniform Params {
-    int radius; // pixels
-    float sharpness;
-} params;
+#include "params/denoise.glsl"
 
-layout(r32f, binding = 2) readonly uniform image2D estimate_image;
-layout(r32f, binding = 3) readonly uniform image2D change_image;
+PICTURE(r32f, estimate_image);
+PICTURE(r32f, change_image);
 #ifdef ACROSS
-layout(location = 0) out vec4 moments_out; // means of m, c, m^2, c^2
+TARGET(0, vec4, rgba32f, moments_out); // means of m, c, m^2, c^2
 const ivec2 STEP = ivec2(1, 0);
 #else
-layout(rgba32f, binding = 4) readonly uniform image2D moments_image;
-layout(location = 0) out float result_out;
+PICTURE(rgba32f, moments_image);
+TARGET(0, float, r32f, result_out);
 const ivec2 STEP = ivec2(0, 1);
 #ifdef ERRORS
-layout(location = 1) out float error_out;
+TARGET(1, float, r32f, error_out);
 #endif
 #endif
 
 vec4 moments_at(ivec2 q) {
 #ifdef ACROSS
-    float m = imageLoad(estimate_image, q).r, c = imageLoad(change_image, q).r;
+    float m = FETCH(estimate_image, q).r, c = FETCH(change_image, q).r;
     return vec4(m, c, m * m, c * c);
 #else
-    return imageLoad(moments_image, q);
+    return FETCH(moments_image, q);
 #endif
 }
 
-void main() {
-    ivec2 p = this_pixel();
+void denoise(ivec2 p) {
     float depth = depth_at(p);
     vec4 centre = moments_at(p), sum = vec4(0.0);
     float total = 1.0;
@@ -60,15 +55,17 @@ void main() {
     }
     vec4 mean = centre + sum / total;
 #ifdef ACROSS
-    moments_out = mean;
+    PUT(moments_out, p, mean);
 #else
-    float m = imageLoad(estimate_image, p).r;
+    float m = FETCH(estimate_image, p).r;
     float S = max(0.0, mean.z - mean.x * mean.x), v = mean.w, seen = max(0.0, S - v);
     float g = S > 0.0 ? seen / S : 0.0;
-    result_out = depth == 0.0 ? m : mix(mean.x, m, g);
+    PUT(result_out, p, depth == 0.0 ? m : mix(mean.x, m, g));
 #ifdef ERRORS
-    float change = mix(mean.y, imageLoad(change_image, p).r, g);
-    error_out = depth == 0.0 ? 0.0 : change * change + (1.0 - g) * (1.0 - g) * seen;
+    float change = mix(mean.y, FETCH(change_image, p).r, g);
+    PUT(error_out, p, depth == 0.0 ? 0.0 : change * change + (1.0 - g) * (1.0 - g) * seen);
 #endif
 #endif
 }
+
+DRAWN_OR_DISPATCHED(denoise)

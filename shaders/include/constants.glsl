@@ -1,0 +1,23 @@
+// Constants that shaders and C share (src/passes/params.h): plain #defines, so that both languages read this file.
+
+#define GROUP_SIDE 8 // a work group is GROUP_SIDE x GROUP_SIDE invocations
+
+// Binding points of the two uniform blocks. All other units are given to a program when it is linked (src/gpu/slots.c).
+#define FRAME_BINDING 0
+#define PARAMS_BINDING 1
+
+#define MAX_SUNS 4
+#define GRID_COUNT 6
+
+// Bounds of rays and hits (src/plugin/trace_abi.h).
+#define RAY_FAR 1e30
+#define HIT_NOTHING 0xffffffffu
+#define HIT_NO_RAY 0xfffffffeu
+
+// The columns of the planes' image, a plane a row.
+#define PLANE_EQUATION 0 // xyz unit normal, w offset: dot(xyz, x) = w
+#define PLANE_U 1        // dot(xyz, x) - w: place on the support's first axis, -1 .. 1
+#define PLANE_V 2
+#define PLANE_LIGHT 3    // rgb: mean of what its pixels send; w how far they may lie off it, negative for uneven ground
+#define PLANE_MASK 4     // 4 columns: 16 rows of 16 bits over the support: the picture does not show the plane to be absent there
+#define PLANE_COLUMNS 8

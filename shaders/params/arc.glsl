@@ -1,0 +1,21 @@
+PARAMS(arc_params) {
+    float radius;        // R, scene units
+    float thickness;     // least thickness of runs of unknown width
+    float kappa;         // thickness of a run over its width
+    float thin;          // least thickness of a run of known width: 0, or where the user has fixed it the same
+    int slices, steps;   // steps a side
+    int seed;
+    int planes;          // how many planes are in use
+    float tolerance;     // of a run, in footprints per pixel of step
+    float level;
+    float strength;
+    int suns;
+    int exitant;
+    float inverse_steps;
+    int before;          // slices of earlier rounds
+    int unused;
+    vec4 sun_direction[MAX_SUNS]; // camera space, unit; w half its width, radians
+    vec4 sun_light[MAX_SUNS];     // rgb: irradiance over pi of a surface that faces the sun
+    vec4 box_low, box_high; // of all surfaces, map axes, the eye at the origin
+    vec4 rest[9];           // radiance coefficients of the map without its suns
+} END_PARAMS(arc_params)

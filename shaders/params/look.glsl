@@ -1,0 +1,5 @@
+PARAMS(look_params) {
+    float scale;
+    float contrast;
+    int unused0, unused1;
+} END_PARAMS(look_params)

@@ -1,0 +1,5 @@
+PARAMS(vpl_params) {
+    float strength;
+    int count;
+    int unused0, unused1;
+} END_PARAMS(vpl_params)
