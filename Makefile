@@ -148,7 +148,11 @@ fuzz: deps
 $(BUILD)/tests/make_corpus: $(BUILD)/tests/fuzz/make_corpus.o $(TESTLIB) $(BUILD)/libssdo.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
-unit: $(UNIT) $(HARD)
+LISTS     := $(BUILD)/tests/list_variants
+$(LISTS): $(BUILD)/tests/limits/list_variants.o $(BUILD)/libssdo.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
+unit: $(UNIT) $(HARD) $(LISTS)
 
 # Real schedulers on this machine (tests/farm/check.sh); what it starts, it stops.
 .PHONY: check-farm
@@ -257,6 +261,7 @@ mutate: $(patsubst %,$(BUILD)/tests/test_%,bias convergence arc s3ho)
 	@sh tests/bench/mutate.sh $(BUILD) $(WORD)
 
 lint: deps-check
+	@$(MAKE) $(JOBS) --no-print-directory $(LISTS)
 	@sh tests/lint.sh $(BUILD)
 	@$(MAKE) $(JOBS) --no-print-directory BUILD=$(BUILD)/lint EXTRA_CFLAGS=-Werror all
 

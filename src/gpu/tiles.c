@@ -106,7 +106,7 @@ void gpu_dispatch_tiles(gpu *g, const gpu_tiles *t, bool everywhere)
             gpu_dispatch(g, (GLuint)(x1 - x0 + GROUP_SIDE - 1) / GROUP_SIDE, (GLuint)(y1 - y0 + GROUP_SIDE - 1) / GROUP_SIDE, 1);
         }
     gpu_barrier(g, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT |
-                    GL_FRAMEBUFFER_BARRIER_BIT);
+                       GL_FRAMEBUFFER_BARRIER_BIT);
 }
 
 void gpu_dispatch_groups(gpu *g, int columns, int rows, int first, int end)
@@ -114,7 +114,7 @@ void gpu_dispatch_groups(gpu *g, int columns, int rows, int first, int end)
     if (end > first) glUniform4i(0, first, end, 0, 0);
     gpu_dispatch(g, (GLuint)columns, (GLuint)(rows > 0 ? rows : 1), 1);
     gpu_barrier(g, GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-                    GL_TEXTURE_UPDATE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+                       GL_TEXTURE_UPDATE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
 }
 
 // Tiles side by side go into one draw, but not many: one draw should stay short.

@@ -83,9 +83,10 @@ bool pass_begin(pass_context *c, error *e)
 {
     double wall = now(CLOCK_MONOTONIC), cpu = now(CLOCK_PROCESS_CPUTIME_ID);
     c->width = c->gb->width, c->height = c->gb->height;
-    bool ok = upload_all(c, c->gb, e) &&
-              gpu_tiles_make(&c->tiles, c->width, c->height, gpu_tile_size(c->g, c->set.samples), c->gb->depth, c->gb->coverage, e) &&
-              gpu_finish(c->g, "the upload", e);
+    bool ok =
+        upload_all(c, c->gb, e) &&
+        gpu_tiles_make(&c->tiles, c->width, c->height, gpu_tile_size(c->g, c->set.samples), c->gb->depth, c->gb->coverage, e) &&
+        gpu_finish(c->g, "the upload", e);
     if (!ok) {
         pass_end(c);
         return false;
