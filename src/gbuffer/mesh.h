@@ -32,8 +32,9 @@ bool mesh_read_obj(const char *path, obj_mesh *out, log_t *log, error *e);
 void mesh_free(obj_mesh *m);
 
 // Cuts a polygon of n >= 3 corners (indices into `vertices`) into n - 2 triangles of the same orientation, clipping ears. out has
-// room for n - 2. A polygon that crosses itself gives n - 2 triangles too, but not a meaningful area.
-void mesh_cut_polygon(const vec3 *vertices, unsigned *corners, size_t n, unsigned (*out)[3]);
+// room for n - 2. A polygon that crosses itself gives n - 2 triangles too, but not a meaningful area. False with ERR_MEMORY, or
+// with no error for a polygon so tangled that it would take longer than some thousand steps a corner.
+bool mesh_cut_polygon(const vec3 *vertices, unsigned *corners, size_t n, unsigned (*out)[3], error *e);
 
 // A material file's colours, read into *table, which grows; used by mesh_read_obj.
 typedef struct mesh_material {

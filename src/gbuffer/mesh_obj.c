@@ -128,7 +128,11 @@ static bool read_face(reader *r, char *rest)
     if (!room_for_triangles(r, n)) return false;
     obj_mesh *m = r->m;
     if (m->triangle_count + n > 0x7ffffff0u) return fail(r, "the mesh has too many triangles");
-    mesh_cut_polygon(m->vertices, r->corners, n, r->cut);
+    if (!mesh_cut_polygon(m->vertices, r->corners, n, r->cut, r->e)) {
+        char what[120];
+        snprintf(what, sizeof what, "a face of %zu corners is too tangled to be cut into triangles", n);
+        return fail(r, what);
+    }
     for (size_t i = 0; i + 2 < n; i++) {
         if (!has_area(m->vertices, r->cut[i])) continue;
         colour_of(r, r->cut[i], m->albedo[m->triangle_count]);
@@ -200,57 +204,4 @@ void mesh_free(obj_mesh *m)
     free(m->triangles);
     free(m->albedo);
     *m = (obj_mesh){0};
-}
-
-// ---- polygons
-
-typedef struct point2 {
-    double x, y;
-} point2;
-
-static double turn(point2 a, point2 b, point2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
-
-// A corner seen along the axis the polygon faces most, so that its area is positive.
-static point2 flatten(vec3 v, vec3 normal)
-{
-    double ax = fabs(normal.x), ay = fabs(normal.y), az = fabs(normal.z);
-    if (ax >= ay && ax >= az) return normal.x > 0 ? (point2){v.y, v.z} : (point2){v.z, v.y};
-    if (ay >= az) return normal.y > 0 ? (point2){v.z, v.x} : (point2){v.x, v.z};
-    return normal.z > 0 ? (point2){v.x, v.y} : (point2){v.y, v.x};
-}
-
-// Newell: the sum over the edges, good for polygons that are not quite flat.
-static vec3 polygon_normal(const vec3 *v, const unsigned *c, size_t n)
-{
-    vec3 sum = v3(0, 0, 0);
-    for (size_t i = 0; i < n; i++) sum = v3_add(sum, v3_cross(v3_sub(v[c[i]], v[c[0]]), v3_sub(v[c[(i + 1) % n]], v[c[0]])));
-    return sum;
-}
-
-static bool is_ear(const vec3 *v, const unsigned *c, size_t n, size_t i, vec3 normal)
-{
-    size_t before = (i + n - 1) % n, after = (i + 1) % n;
-    point2 a = flatten(v[c[before]], normal), b = flatten(v[c[i]], normal), d = flatten(v[c[after]], normal);
-    if (turn(a, b, d) <= 0.0) return false;
-    for (size_t k = 0; k < n; k++) {
-        point2 p = flatten(v[c[k]], normal);
-        bool corner = c[k] == c[before] || c[k] == c[i] || c[k] == c[after];
-        if (!corner && turn(a, b, p) >= 0.0 && turn(b, d, p) >= 0.0 && turn(d, a, p) >= 0.0) return false;
-    }
-    return true;
-}
-
-void mesh_cut_polygon(const vec3 *v, unsigned *c, size_t n, unsigned (*out)[3])
-{
-    vec3 normal = polygon_normal(v, c, n);
-    for (size_t at = 0; n > 3; n--) {
-        size_t ear = 0;
-        while (ear < n && !is_ear(v, c, n, (at + ear) % n, normal)) ear++;
-        size_t i = (at + (ear < n ? ear : 0)) % n; // no ear: it crosses itself or has no area, so any will do
-        unsigned *t = *out++;
-        t[0] = c[(i + n - 1) % n], t[1] = c[i], t[2] = c[(i + 1) % n];
-        memmove(c + i, c + i + 1, (n - i - 1) * sizeof *c);
-        at = i < n - 1 ? i : 0;
-    }
-    memcpy(*out, c, 3 * sizeof *c);
 }

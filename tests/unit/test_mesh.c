@@ -162,7 +162,7 @@ static void polygons_are_cut_into_their_area(void **state)
                     v[i] = facing < 2 ? v3(a, b, 1) : facing < 4 ? v3(1, a, b) : v3(b, 1, a);
                     corners[i] = (unsigned)((i + start) % n);
                 }
-                mesh_cut_polygon(v, corners, n, out);
+                assert_true(mesh_cut_polygon(v, corners, n, out, NULL));
                 vec3 sum = v3(0, 0, 0);
                 double absolute = 0.0;
                 for (size_t t = 0; t < n - 2; t++) {
@@ -175,10 +175,71 @@ static void polygons_are_cut_into_their_area(void **state)
             }
 }
 
+// Twice the area by the polygon's edges.
+static double area_of_edges(const vec3 *v, size_t n)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++) sum += v[i].x * v[(i + 1) % n].y - v[i].y * v[(i + 1) % n].x;
+    return sum;
+}
+
+enum { MANY = 40000 };
+
+static vec3 outline(int kind, size_t i)
+{
+    double t = 2.0 * M_PI * (double)i / MANY;
+    if (kind == 0) return v3(cos(t), sin(t), 0.5); // a disk
+    if (kind == 1) return v3_scale(v3(cos(t), sin(t), 0), i % 2 ? 1.0 : 0.9);
+    if (kind == 2) { // a comb
+        size_t half = MANY / 2;
+        return i < half ? v3((double)i, i % 2 ? 1.0 : 0.0, 0) : v3((double)(MANY - 1 - i), i % 2 ? -2.0 : -2.5, 0);
+    }
+    // A spiral band of ten turns, out along one edge and back along the other.
+    size_t half = MANY / 2, k = i < half ? i : MANY - 1 - i;
+    double turns = 20.0 * M_PI * (double)k / (double)half, r = 1.0 + turns + (i < half ? 2.0 : 0.0);
+    return v3(r * cos(turns), r * sin(turns), 0);
+}
+
+// Outlines of many corners, as text and coastlines have them: cut exactly, and before the alarm that ends the test if the time
+// grows with the square of their number (1600 s with the cut of small ones).
+static void large_polygons_are_cut(void **state)
+{
+    (void)state;
+    vec3 *v = test_malloc(MANY * sizeof *v);
+    unsigned *corners = test_malloc(MANY * sizeof *corners), (*out)[3] = test_malloc(MANY * sizeof *out);
+    alarm(60);
+    for (int kind = 0; kind < 4; kind++) {
+        for (size_t i = 0; i < MANY; i++) v[i] = outline(kind, i), corners[i] = (unsigned)i;
+        if (!mesh_cut_polygon(v, corners, MANY, out, NULL)) fail_msg("outline %d is given up", kind);
+        double signed_sum = 0.0, absolute = 0.0, wanted = area_of_edges(v, MANY);
+        for (size_t t = 0; t < MANY - 2; t++) {
+            vec3 c = v3_cross(v3_sub(v[out[t][1]], v[out[t][0]]), v3_sub(v[out[t][2]], v[out[t][0]]));
+            signed_sum += c.z;
+            absolute += fabs(c.z);
+        }
+        assert_near(signed_sum / wanted, 1.0, 1e-9);
+        assert_near(absolute / fabs(wanted), 1.0, 1e-9);
+    }
+    // Corners that jump about: cut or given up, but answered.
+    unsigned r = 1;
+    for (size_t i = 0; i < MANY; i++) {
+        r = r * 1664525u + 1013904223u;
+        v[i] = v3((double)(r >> 8), (double)(r * 69069u >> 8), 0), corners[i] = (unsigned)i;
+    }
+    error e = {0};
+    (void)mesh_cut_polygon(v, corners, MANY, out, &e);
+    assert_int_equal(e.code, ERR_NONE);
+    alarm(0);
+    test_free(v);
+    test_free(corners);
+    test_free(out);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_the_forms), cmocka_unit_test(colours_come_from_vertices_or_materials),
-        cmocka_unit_test(errors_name_the_line), cmocka_unit_test(polygons_are_cut_into_their_area)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(reads_the_forms),
+                                       cmocka_unit_test(colours_come_from_vertices_or_materials),
+                                       cmocka_unit_test(errors_name_the_line), cmocka_unit_test(polygons_are_cut_into_their_area),
+                                       cmocka_unit_test(large_polygons_are_cut)};
     return cmocka_run_group_tests_name("mesh", tests, make_folder, remove_folder);
 }
