@@ -1,6 +1,7 @@
 #include "light/environment.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -115,6 +116,12 @@ static void match_primaries(const env_options *options, const map_primaries *map
     log_info(log, "environment: converted to the picture's primaries (chromaticities of both files)");
 }
 
+static bool to_linear(void *context, float *rgb, size_t n, error *e)
+{
+    const env_options *options = context;
+    return colour_to_scene_linear(options->ocio, options->colorspace, rgb, n, e);
+}
+
 bool environment_load(const env_options *options, environment *out, log_t *log, error *e)
 {
     static const float white[3] = {1, 1, 1};
@@ -127,14 +134,13 @@ bool environment_load(const env_options *options, environment *out, log_t *log, 
     int width, height;
     float *rgb = NULL;
     map_primaries primaries;
-    if (!latlong_read(options->path, options->threads, &width, &height, &rgb, &primaries, log, e)) return false;
-    size_t texels = (size_t)width * (size_t)height;
-    bool ok = true;
-    if (options->colorspace)
-        ok = colour_to_scene_linear(options->ocio, options->colorspace, rgb, texels, e);
-    else
-        match_primaries(options, &primaries, rgb, texels, log);
-    ok = ok && environment_prepare(rgb, width, height, options, out, log, e);
+    const latlong_options reading = {.path = options->path,
+                                     .threads = options->threads,
+                                     .convert = options->colorspace ? to_linear : NULL,
+                                     .context = (void *)(uintptr_t)options};
+    if (!latlong_read(&reading, &width, &height, &rgb, &primaries, log, e)) return false;
+    if (!options->colorspace) match_primaries(options, &primaries, rgb, (size_t)width * (size_t)height, log);
+    bool ok = environment_prepare(rgb, width, height, options, out, log, e);
     free(rgb);
     return ok;
 }

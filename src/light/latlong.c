@@ -11,7 +11,46 @@
 #include "base/mem.h"
 #include "exr/file.h"
 #include "light/environment.h"
+#include "light/reduce.h"
 #include "plugin/images.h"
+
+enum { BAND = 1 << 22 }; // texels converted at a time: each time, OpenColorIO reads its config again
+
+typedef struct reader {
+    const char *path;
+    const latlong_options *options;
+    reduced_map map;
+    float *row;  // scratch of take_rows
+    float *band; // rows that wait for their conversion
+    int band_first, band_rows;
+    log_t *log;
+    error *e;
+} reader;
+
+static bool flush(reader *r)
+{
+    size_t across = 3 * (size_t)r->map.from_width;
+    if (r->band_rows == 0) return true;
+    bool ok = r->options->convert(r->options->context, r->band, across / 3 * (size_t)r->band_rows, r->e);
+    for (int i = 0; ok && i < r->band_rows; i++) reduce_row(&r->map, r->band_first + i, r->band + across * (size_t)i);
+    r->band_rows = 0;
+    return ok;
+}
+
+// A row on its way into the map: converted to linear light first, for means of anything else are not means of light.
+static bool give(reader *r, int y, const float *rgb)
+{
+    int most = r->map.from_width < BAND ? BAND / r->map.from_width : 1;
+    size_t across = 3 * (size_t)r->map.from_width;
+    if (!r->options->convert) {
+        reduce_row(&r->map, y, rgb);
+        return true;
+    }
+    if (!r->band && !(r->band = mem_pixels(across * (size_t)most, sizeof *r->band, r->e))) return false;
+    if (r->band_rows == 0) r->band_first = y;
+    memcpy(r->band + across * (size_t)r->band_rows++, rgb, across * sizeof *rgb);
+    return r->band_rows < most || flush(r);
+}
 
 // By its first bytes, not by its name.
 static bool is_exr(const char *path, bool *exr, error *e)
@@ -103,44 +142,51 @@ static float sample(const exr_channel *channel, size_t i)
     return channel->type == SAMPLE_HALF ? half_to_float(((const uint16_t *)channel->data)[i]) : ((const float *)channel->data)[i];
 }
 
-static bool gather(const exr_part *part, const int channels[3], int *width, int *height, float **rgb, error *e)
+static bool gather(reader *r, const exr_part *part, const int channels[3])
 {
     box2 data = part->data_window, window = sphere_window(part);
-    size_t w = (size_t)box2_width(data), across = (size_t)box2_width(window), down = (size_t)box2_height(window);
-    float *out = mem_zero(across * down, 3 * sizeof *out, e);
-    if (!out) return false;
-    for (int y = data.y0; y <= data.y1; y++)
-        for (int x = data.x0; x <= data.x1; x++) {
-            size_t from = (size_t)(y - data.y0) * w + (size_t)(x - data.x0);
-            size_t to = (size_t)(y - window.y0) * across + (size_t)(x - window.x0);
-            for (size_t c = 0; c < 3; c++) out[3 * to + c] = sample(&part->channels[channels[c]], from);
-        }
-    *width = (int)across;
-    *height = (int)down;
-    *rgb = out;
-    return true;
+    size_t w = (size_t)box2_width(data), across = (size_t)box2_width(window);
+    float *row = mem_zero(across, 3 * sizeof *row, r->e);
+    bool ok = row != NULL;
+    for (int y = window.y0; ok && y <= window.y1; y++) {
+        bool there = y >= data.y0 && y <= data.y1;
+        memset(row, 0, across * 3 * sizeof *row);
+        for (size_t x = 0; there && x < w; x++)
+            for (size_t c = 0; c < 3; c++)
+                row[3 * (x + (size_t)(data.x0 - window.x0)) + c] =
+                    sample(&part->channels[channels[c]], (size_t)(y - data.y0) * w + x);
+        ok = give(r, y - window.y0, row);
+    }
+    free(row);
+    return ok;
 }
 
-static bool read_exr(const char *path, int threads, int *width, int *height, float **rgb, map_primaries *primaries, log_t *log,
-                     error *e)
+static bool read_exr(reader *r, int threads, map_primaries *primaries)
 {
     bool ok = false;
     exr_file *file = NULL;
     selection s;
-    if (!exr_file_open(path, &file, e)) goto out;
+    if (!exr_file_open(r->path, &file, r->e)) goto out;
     if (!select_channels(file, &s)) {
-        err_set(e, ERR_INPUT, path, NULL,
+        err_set(r->e, ERR_INPUT, r->path, NULL,
                 "the environment map has no half or float channels R, G and B, nor a single Y; rename them");
         goto out;
     }
     exr_part *part = &file->parts[s.part];
-    for (int c = 0; c < 3; c++) part->channels[s.channels[c]].wanted = true;
-    if (!exr_file_load(file, threads, e)) goto out;
-    ok = gather(part, s.channels, width, height, rgb, e);
+    box2 window = sphere_window(part);
+    double stored = 0.0;
+    for (int c = 0; c < 3; c++) {
+        stored += part->channels[s.channels[c]].wanted ? 0.0 : (double)sample_size(part->channels[s.channels[c]].type);
+        part->channels[s.channels[c]].wanted = true;
+    }
+    if (!reduce_begin(&r->map, box2_width(window), box2_height(window), stored, r->path, r->e) ||
+        !exr_file_load(file, threads, r->e))
+        goto out;
+    ok = gather(r, part, s.channels);
     primaries->known = exr_attr_chromaticities(file, s.part, primaries->xy);
     if (ok)
-        log_info(log, "environment: %s, %s %s %s, %d x %d", path, part->channels[s.channels[0]].name,
-                 part->channels[s.channels[1]].name, part->channels[s.channels[2]].name, *width, *height);
+        log_info(r->log, "environment: %s, %s %s %s, %d x %d", r->path, part->channels[s.channels[0]].name,
+                 part->channels[s.channels[1]].name, part->channels[s.channels[2]].name, r->map.from_width, r->map.from_height);
 out:
     exr_file_close(file);
     return ok;
@@ -148,27 +194,45 @@ out:
 
 // ---- everything else
 
-static bool read_other(const char *path, int *width, int *height, float **rgb, error *e)
+// One or two channels are grey, with or without alpha.
+static int take_rows(void *context, int width, int height, int channels, int y, int rows, const float *pixels)
 {
-    int channels = 0;
-    float *pixels = NULL;
-    if (!images_read_float(path, 0, width, height, &channels, &pixels, e)) return false;
-    size_t texels = (size_t)*width * (size_t)*height, stride = (size_t)channels;
-    float *out = channels > 0 ? mem_pixels(texels, 3 * sizeof *out, e) : NULL;
-    // One or two channels are grey, with or without alpha.
-    for (size_t i = 0; out && i < texels; i++)
-        for (size_t c = 0; c < 3; c++) out[3 * i + c] = pixels[i * stride + (stride >= 3 ? c : 0)];
-    free(pixels);
-    *rgb = out;
-    return out || err_set(e, ERR_INPUT, path, NULL, "the environment map has no channels; give a colour or grey image");
+    reader *r = context;
+    size_t stride = (size_t)channels, across = (size_t)width;
+    if (rows == 0) {
+        if (channels < 1)
+            return err_set(r->e, ERR_INPUT, r->path, NULL, "the environment map has no channels; give a colour or grey image");
+        // Rows in tiles or blocks of 64, as stored and as float, are the most that reading takes.
+        return reduce_begin(&r->map, width, height, 0.0, r->path, r->e) &&
+               (r->row = mem_pixels(across, 3 * sizeof *r->row, r->e));
+    }
+    for (int k = 0; k < rows; k++, pixels += across * stride) {
+        for (size_t i = 0; i < across; i++)
+            for (size_t c = 0; c < 3; c++) r->row[3 * i + c] = pixels[i * stride + (stride >= 3 ? c : 0)];
+        if (!give(r, y + k, r->row)) return false;
+    }
+    return true;
 }
 
-bool latlong_read(const char *path, int threads, int *width, int *height, float **rgb, map_primaries *primaries, log_t *log,
+bool latlong_read(const latlong_options *options, int *width, int *height, float **rgb, map_primaries *primaries, log_t *log,
                   error *e)
 {
+    reader r = {.path = options->path, .options = options, .log = log, .e = e};
     bool exr = false;
     *rgb = NULL;
     *primaries = (map_primaries){0};
-    if (!is_exr(path, &exr, e)) return false;
-    return exr ? read_exr(path, threads, width, height, rgb, primaries, log, e) : read_other(path, width, height, rgb, e);
+    bool ok = is_exr(r.path, &exr, e) &&
+              (exr ? read_exr(&r, options->threads, primaries) : images_read_rows(r.path, 0, take_rows, &r, e)) && flush(&r);
+    free(r.row);
+    free(r.band);
+    if (ok) {
+        reduce_end(&r.map);
+        if (r.map.weights)
+            log_info(log, "environment: %s has %d x %d texels, which are read as %d x %d", r.path, r.map.from_width,
+                     r.map.from_height, r.map.width, r.map.height);
+        *width = r.map.width, *height = r.map.height, *rgb = r.map.rgb;
+        r.map.rgb = NULL;
+    }
+    reduce_free(&r.map);
+    return ok;
 }

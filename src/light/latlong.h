@@ -2,6 +2,8 @@
 #ifndef SSDO_LIGHT_LATLONG_H
 #define SSDO_LIGHT_LATLONG_H
 
+#include <stddef.h>
+
 #include "base/error.h"
 #include "base/log.h"
 
@@ -11,9 +13,17 @@ typedef struct map_primaries {
     double xy[8];
 } map_primaries;
 
-// *rgb: 3 floats a texel, row-major, top row first, as stored (not repaired); the caller frees it. ERR_INPUT names what is
-// missing.
-bool latlong_read(const char *path, int threads, int *width, int *height, float **rgb, map_primaries *primaries, log_t *log,
+typedef struct latlong_options {
+    const char *path;
+    int threads;
+    // Turns n texels into linear light, in place; NULL: they are. Before a large map is made smaller.
+    bool (*convert)(void *context, float *rgb, size_t n, error *e);
+    void *context;
+} latlong_options;
+
+// *rgb: 3 floats a texel, row-major, top row first, not repaired; the caller frees it. A map of more than REDUCE_TEXELS texels
+// (light/reduce.h) is made smaller while it is read. ERR_INPUT names what is missing, ERR_MEMORY a map that does not fit.
+bool latlong_read(const latlong_options *options, int *width, int *height, float **rgb, map_primaries *primaries, log_t *log,
                   error *e);
 
 #endif

@@ -8,14 +8,14 @@
 
 static const module images = {"ssdo-images.so", "OpenImageIO"};
 
-bool images_read_float(const char *path, int part, int *width, int *height, int *channels, float **pixels, error *e)
+bool images_read_rows(const char *path, int part, images_take_fn take, void *context, error *e)
 {
     char message[MODULE_MESSAGE] = "";
-    *pixels = NULL;
-    images_read_float_fn read = (images_read_float_fn)module_function(&images, "ssdo_images_read_float",
-                                                                      "reading this kind of image", ERR_INPUT, path, e);
+    images_read_rows_fn read =
+        (images_read_rows_fn)module_function(&images, "ssdo_images_read_rows", "reading this kind of image", ERR_INPUT, path, e);
     if (!read) return false;
-    if (read(path, part, width, height, channels, pixels, message, sizeof message)) return true;
+    if (read(path, part, take, context, message, sizeof message)) return true;
+    if (!message[0]) return false; // `take` knows why
     return err_set(e, ERR_INPUT, path, NULL, "cannot be read as an image: %s; check the file or convert it to EXR", message);
 }
 

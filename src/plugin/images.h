@@ -8,10 +8,12 @@
 #include <stdint.h>
 
 #include "base/error.h"
+#include "plugin/images_abi.h"
 
-// All channels of sub-image `part` (level 0) of an image file as float, interleaved, top row first, over its data window. *pixels
-// is malloc'ed, the caller frees it. Used for environments that are not EXR.
-bool images_read_float(const char *path, int part, int *width, int *height, int *channels, float **pixels, error *e);
+// All channels of sub-image `part` (level 0) of an image file as float, interleaved, a band of rows of its data window after the
+// other (images_abi.h says how), so that the whole is never in memory. False with e->code ERR_NONE if `take` stopped. Used for
+// environments that are not EXR.
+bool images_read_rows(const char *path, int part, images_take_fn take, void *context, error *e);
 
 // The channels of an EXR part in their stored types (DWA): for each of `count` channel names, data[i] receives malloc'ed samples
 // (2 bytes for half, 4 for float and uint) or NULL where names[i] was not wanted (a NULL name).

@@ -7,8 +7,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-typedef int (*images_read_float_fn)(const char *path, int part, int *width, int *height, int *channels, float **pixels,
-                                    char *message, size_t message_size);
+// Takes rows of an image, top first: `channels` floats a pixel, `rows` rows from `y` on; before the first ones once with no rows,
+// so that size and channels are known. Returns 0 to stop.
+typedef int (*images_take_fn)(void *context, int width, int height, int channels, int y, int rows, const float *pixels);
+typedef int (*images_read_rows_fn)(const char *path, int part, images_take_fn take, void *context, char *message,
+                                   size_t message_size);
 typedef int (*images_read_native_fn)(const char *path, int part, int width, int height, int count, const char *const *names,
                                      const int *types, void **data, char *message, size_t message_size);
 // A PNG file in *bytes. label: a text that it carries as `key`.

@@ -1,4 +1,5 @@
 // The C++ side of plugin/images.h. See images_abi.h for the rules of the border: nothing may be thrown across it.
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -73,6 +74,33 @@ void read_all(ImageInput &in, int part, TypeDesc type, void *to)
         throw std::runtime_error(reason(in.geterror(), "its pixels cannot be read"));
 }
 
+// Rows [y, end) of the data window as float; of a tiled file, whole rows of tiles.
+void read_band(ImageInput &in, int part, int y, int end, float *to)
+{
+    const ImageSpec &s = in.spec();
+    const bool ok =
+        s.tile_width ? in.read_tiles(part, 0, s.x, s.x + s.width, s.y + y, s.y + end, 0, 1, 0, s.nchannels, TypeDesc::FLOAT, to)
+                     : in.read_scanlines(part, 0, s.y + y, s.y + end, 0, 0, s.nchannels, TypeDesc::FLOAT, to);
+    if (!ok) throw std::runtime_error(reason(in.geterror(), "its pixels cannot be read"));
+}
+
+// False if `take` wants no more.
+bool read_rows(const char *path, int part, images_take_fn take, void *context)
+{
+    auto in = open_part(path, part);
+    const ImageSpec spec = in->spec();
+    if (!take(context, spec.width, spec.height, spec.nchannels, 0, 0, nullptr)) return false;
+    const int band = spec.tile_height ? spec.tile_height : 64;
+    memory p = allocate(size_t(spec.width) * size_t(band) * size_t(spec.nchannels) * sizeof(float));
+    float *rows = static_cast<float *>(p.get());
+    for (int y = 0; y < spec.height; y += band) {
+        const int end = std::min(y + band, spec.height);
+        read_band(*in, part, y, end, rows);
+        if (!take(context, spec.width, spec.height, spec.nchannels, y, end - y, rows)) return false;
+    }
+    return true;
+}
+
 TypeDesc stored_type(int sample_type) // OpenEXR's numbers
 {
     return sample_type == 0 ? TypeDesc::UINT32 : sample_type == 1 ? TypeDesc::HALF : TypeDesc::FLOAT;
@@ -133,19 +161,11 @@ void encode_png(int width, int height, const uint8_t *rgb, const char *key, cons
 extern "C" {
 #define EXPORT __attribute__((visibility("default")))
 
-EXPORT int ssdo_images_read_float(const char *path, int part, int *width, int *height, int *channels, float **pixels,
-                                  char *message, size_t message_size)
+EXPORT int ssdo_images_read_rows(const char *path, int part, images_take_fn take, void *context, char *message,
+                                 size_t message_size)
 {
-    return guarded(message, message_size, [&] {
-        auto in = open_part(path, part);
-        const ImageSpec spec = in->spec();
-        memory p = allocate(size_t(spec.width) * size_t(spec.height) * size_t(spec.nchannels) * sizeof(float));
-        read_all(*in, part, TypeDesc::FLOAT, p.get());
-        *width = spec.width;
-        *height = spec.height;
-        *channels = spec.nchannels;
-        *pixels = static_cast<float *>(p.release());
-    });
+    bool whole = false;
+    return guarded(message, message_size, [&] { whole = read_rows(path, part, take, context); }) && whole;
 }
 
 EXPORT int ssdo_images_read_native(const char *path, int part, int width, int height, int count, const char *const *names,

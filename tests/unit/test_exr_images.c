@@ -22,6 +22,23 @@ static bool have_module(void)
     return false;
 }
 
+// A whole picture of floats.
+typedef struct picture {
+    int width, height, channels;
+    float *pixels;
+} picture;
+
+static int take_rows(void *context, int width, int height, int channels, int y, int rows, const float *pixels)
+{
+    picture *p = context;
+    size_t row = (size_t)width * (size_t)channels;
+    if (rows == 0)
+        *p = (picture){width, height, channels, malloc(row * (size_t)height * sizeof(float))};
+    else
+        memcpy(p->pixels + (size_t)y * row, pixels, (size_t)rows * row * sizeof(float));
+    return 1;
+}
+
 static void test_png_there_and_back(void **state)
 {
     (void)state;
@@ -32,12 +49,11 @@ static void test_png_there_and_back(void **state)
     error e = {0};
     for (int twice = 0; twice < 2; twice++)
         assert_ok(images_write_png(in_scratch("a.png"), W, H, rgb, "Software", "test", &e), e); // replaces
-    int w, h, channels;
-    float *pixels;
-    assert_ok(images_read_float(in_scratch("a.png"), 0, &w, &h, &channels, &pixels, &e), e);
-    assert_true(w == W && h == H && channels == 3);
-    for (int i = 0; i < W * H * 3; i++) assert_int_equal((int)(pixels[i] * 255.0f + 0.5f), rgb[i]);
-    free(pixels);
+    picture p = {0};
+    assert_ok(images_read_rows(in_scratch("a.png"), 0, take_rows, &p, &e), e);
+    assert_true(p.width == W && p.height == H && p.channels == 3);
+    for (int i = 0; i < W * H * 3; i++) assert_int_equal((int)(p.pixels[i] * 255.0f + 0.5f), rgb[i]);
+    free(p.pixels);
     // Nothing but the file is left.
     assert_int_equal(run_command("test \"$(ls -A '%s')\" = a.png", scratch_folder), 0);
 }
@@ -51,15 +67,14 @@ static void test_failures(void **state)
     assert_false(images_write_png(in_scratch("none/a.png"), 1, 1, rgb, "Software", "test", &e));
     assert_int_equal(e.code, ERR_OUTPUT);
     assert_non_null(strstr(e.message, in_scratch("none")));
-    int w, h, channels;
-    float *pixels = (float *)1;
+    picture p = {0};
     e = (error){0};
     spill(in_scratch("text.png"), "This is not a picture.", 22);
-    assert_false(images_read_float(in_scratch("text.png"), 0, &w, &h, &channels, &pixels, &e));
+    assert_false(images_read_rows(in_scratch("text.png"), 0, take_rows, &p, &e));
     assert_int_equal(e.code, ERR_INPUT);
-    assert_null(pixels);
+    assert_null(p.pixels);
     e = (error){0};
-    assert_false(images_read_float(in_scratch("missing.png"), 0, &w, &h, &channels, &pixels, &e));
+    assert_false(images_read_rows(in_scratch("missing.png"), 0, take_rows, &p, &e));
     assert_int_equal(e.code, ERR_INPUT);
 }
 
@@ -99,10 +114,9 @@ static void test_without_the_module(void **state)
     setenv("SSDO_PLUGIN_DIR", "/nowhere", 1);
     const uint8_t rgb[3] = {1, 2, 3};
     error in = {0}, out = {0};
-    int w, h, channels;
-    float *pixels;
+    picture p = {0};
     assert_false(images_write_png(in_scratch("b.png"), 1, 1, rgb, "Software", "test", &out));
-    assert_false(images_read_float(in_scratch("b.png"), 0, &w, &h, &channels, &pixels, &in));
+    assert_false(images_read_rows(in_scratch("b.png"), 0, take_rows, &p, &in));
     setenv("SSDO_PLUGIN_DIR", folder, 1);
     free(folder);
     assert_int_equal(out.code, ERR_OUTPUT);
