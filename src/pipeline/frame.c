@@ -291,7 +291,7 @@ static bool prepare_view(const job *j, frame_result *r, double radius, error *e)
     if (r->gb.valid == 0) log_warn(j->log, "empty", "%s: no pixel has a surface; the layers are neutral", r->file->path);
     r->set = settings_of(j, r, radius);
     describe(j, r);
-    return check_world(j, r, e) && load_proxies(j, r, e) && filter_prepare(j, r, e);
+    return frame_check_scale(r, e) && check_world(j, r, e) && load_proxies(j, r, e) && filter_prepare(j, r, e);
 }
 
 bool frame_prepare(const job *j, frame_result *r, error *e)

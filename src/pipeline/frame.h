@@ -107,6 +107,11 @@ void frame_free(frame_result *result);
 // The depth in the middle of the surfaces, 1 where there are none: where a length in pixels and one in the scene are compared.
 double frame_median_depth(const gbuffer *gb);
 
+// Lengths are squared in single precision and compared with the smallest that is told from nothing: pictures are computed alike
+// where a pixel is at least 1e-14 scene units wide at the median depth and a tenth of the surfaces is nearer than 1e10. ERR_INPUT
+// for what is beyond.
+bool frame_check_scale(const frame_result *r, error *e);
+
 // The automatic radius of one frame, for a sequence that must have the same radius everywhere.
 bool frame_measure_radius(const job *j, const char *const *inputs, int count, double *radius, error *e);
 

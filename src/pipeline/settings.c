@@ -23,8 +23,8 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Of at most a few thousand evenly spaced surfaces: enough for a scale.
-double frame_median_depth(const gbuffer *gb)
+// Of at most a few thousand evenly spaced surfaces: enough for a scale. `share` of them are nearer.
+static double depth_at(const gbuffer *gb, double share)
 {
     enum { MOST = 4096 };
     float depths[MOST];
@@ -34,7 +34,21 @@ double frame_median_depth(const gbuffer *gb)
         if (gb->depth[i] > 0.0f && seen++ % stride == 0) depths[n++] = gb->depth[i];
     if (n == 0) return 1.0;
     qsort(depths, (size_t)n, sizeof *depths, by_value);
-    return depths[n / 2];
+    return (double)depths[(int)(share * n)];
+}
+
+double frame_median_depth(const gbuffer *gb) { return depth_at(gb, 0.5); }
+
+bool frame_check_scale(const frame_result *r, error *e)
+{
+    static const double least_pixel = 1e-14, most_depth = 1e10;
+    const camera *c = &r->gb.camera;
+    double depth = frame_median_depth(&r->gb), pixel = c->kind == CAMERA_ORTHOGRAPHIC ? 1.0 / c->fx : depth / c->fx;
+    if (r->gb.valid == 0 || (pixel >= least_pixel && depth_at(&r->gb, 0.1) <= most_depth)) return true;
+    return err_set(e, ERR_INPUT, r->file->path, NULL,
+                   "its surfaces are about %.2g scene units away and a pixel is %.2g wide, beyond what is computed with (%g to "
+                   "%g); render it in another unit",
+                   depth, pixel, least_pixel, most_depth);
 }
 
 // The world the environment is fixed to: the scene's, or one that moves with the camera, its up axis up in the picture and the

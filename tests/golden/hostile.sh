@@ -77,6 +77,22 @@ oiiotool "$dir/geometry.exr" "$dir/albedo.exr" --chappend -o "$dir/negative.exr"
 grep -q "albedo's samples are negative" "$dir/err" || fail "nothing is said about a negative albedo"
 oiiotool --stats "$dir/out.exr" 2>/dev/null | grep 'Stats Min' | grep -q -- '-[0-9]' && fail "a negative composite"
 
+# --- a scene too small or too large for single precision; at the borders it is the same picture ---
+scaled() { # FACTOR FILE
+    oiiotool "$dir/geometry.exr" -d float --ch ViewLayer.Position.X,ViewLayer.Position.Y,ViewLayer.Position.Z --mulc "$1" -o "$dir/p.exr"
+    oiiotool "$dir/geometry.exr" -d float --ch ViewLayer.Normal.X,ViewLayer.Normal.Y,ViewLayer.Normal.Z "$dir/p.exr" --chappend -o "$2"
+} >/dev/null 2>&1
+for factor in 1e-16 1e10; do
+    scaled $factor "$dir/scaled.exr" && expect 3 "in another unit" "$dir/scaled.exr" --layers occlusion
+done
+scaled 1 "$dir/scaled.exr"
+"$SSDO" -q "$dir/scaled.exr" --layers occlusion --keep none -o "$dir/one.exr" 2>"$dir/err" || fail "a scene in its own unit"
+for factor in 1e-11 1e8; do
+    scaled $factor "$dir/scaled.exr"
+    "$SSDO" -q "$dir/scaled.exr" --layers occlusion --keep none -o "$dir/out.exr" 2>"$dir/err" || fail "a scene $factor times as large"
+    idiff -fail 0.01 -failpercent 0.1 "$dir/one.exr" "$dir/out.exr" >"$dir/err" 2>&1 || fail "another picture of a scene $factor times as large"
+done
+
 # --- a limit on the size of files is a full disk ---
 (
     ulimit -f 8
