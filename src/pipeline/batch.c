@@ -382,6 +382,7 @@ bool batch_run(job *j, error *e)
     pthread_t threads[2];
     if (!b) return false;
     b->j = j;
+    j->no_pass_times = j->o->report && !pattern_is(j->o->report);
     b->in_flight = j->g.mapped ? BATCH_MOST_IN_FLIGHT : BATCH_IN_FLIGHT;
     pthread_mutex_init(&b->lock, NULL);
     pthread_cond_init(&b->changed, NULL);

@@ -153,7 +153,7 @@ bool filter_begin(job *j, frame_result *r, error *e)
     pass_context c = {
         .g = &j->g,
         .log = j->log,
-        .timing = j->o->report != NULL,
+        .timing = j->o->report && !j->no_pass_times,
         .threads = j->threads,
         .stop = j->stop,
         .set = r->set,

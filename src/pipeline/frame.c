@@ -214,7 +214,7 @@ typedef struct reading {
 static void *read_beside(void *arg)
 {
     reading *d = arg;
-    d->ok = finish_reading(d->j, d->r, &d->e);
+    d->ok = finish_reading(d->j, d->r, &d->e) && frame_prepare(d->j, d->r, &d->e);
     return NULL;
 }
 
@@ -296,6 +296,7 @@ static bool prepare_view(const job *j, frame_result *r, double radius, error *e)
 
 bool frame_prepare(const job *j, frame_result *r, error *e)
 {
+    if (r->prepared) return true;
     stopwatch t = stopwatch_start();
     double radius = settings_radius(j, &r->gb);
     bool ok = true;

@@ -28,6 +28,7 @@ typedef struct job {
     const volatile int *stop; // borrowed, may be NULL: once it is not zero, frames are dropped unless they are being written
     progress *progress;       // borrowed, may be NULL
     bool no_floats;           // nobody looks at a frame's `layers`: they are not kept
+    bool no_pass_times;       // nobody looks at the passes' own times, for which each would have to be waited for
     double shot_radius;       // automatic radius of the whole sequence; 0: each frame has its own
 } job;
 

@@ -41,6 +41,7 @@ static json_object *report_by(const char *method_name, const char *input, const 
     o.report = path;
     log_init(&log, LOG_QUIET);
     must(job_open(&j, &o, &log, &e), &e);
+    j.no_floats = true; // as without a preview
     must(frame_run(&j, input, output, &r, &e), &e);
     must(report_write(&j, &r, output, path, &e), &e);
     json_object *report = json_object_from_file(path);
@@ -201,6 +202,8 @@ static void occlusion_uploads_depth_and_normals(void **state)
     assert_int_equal(json_object_array_length(field(r, "uploads")), 2);
     assert_int_equal(bytes_of(r, "depth"), 4 * WIDTH * HEIGHT);
     assert_int_equal(bytes_of(r, "normal"), 16 * WIDTH * HEIGHT);
+    assert_int_equal(json_object_array_length(field(r, "layers")), 1);
+    assert_string_equal(json_object_get_string(json_object_array_get_idx(field(r, "layers"), 0)), "occlusion");
     assert_int_equal(gl(r, "uploads"), 2);
     assert_int_equal(gl(r, "bytes_up"), 20 * WIDTH * HEIGHT);
     assert_int_equal(gl(r, "bytes_down"), 4 * WIDTH * HEIGHT);
