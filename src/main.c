@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "base/outfile.h"
 #include "base/text.h"
+#include "cli/names.h"
 #include "cli/options.h"
 #include "cli/signals.h"
 #include "pipeline/batch.h"
@@ -87,6 +88,7 @@ static bool run_on(const options *o, const run_files *files, const volatile int 
 static bool run(const options *o, const volatile int *stop_signal, log_t *log, error *e)
 {
     run_files files;
+    names_warn(o, log);
     bool ok = run_files_list(o, &files, e) && run_on(o, &files, stop_signal, log, e);
     run_files_free(&files);
     return ok;
@@ -126,6 +128,7 @@ int main(int argc, char **argv)
     const volatile int *stop_signal = signals_catch();
     options_defaults(&o);
     if (!options_parse(argc, argv, &o, &e)) return fail(&o, &e);
+    o.literal = names_are_literal(&o);
     bool ok = true, told = tell(&o, &ok, &e);
     if (told) return finish_output(&e) && ok ? 0 : fail(&o, &e);
     log_t log;

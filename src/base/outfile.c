@@ -50,21 +50,31 @@ void outfile_remove_all(void)
         if (atomic_load(&tracked[i].state) == LIVE) unlink(tracked[i].path);
 }
 
-// The path the file will really have: a symbolic link is followed, so that it is not replaced by a plain file.
-static char *resolve_target(const char *path, error *e)
-{
-    char *real = realpath(path, NULL);
-    if (!real) return mem_string(path, e);
-    char *copy = mem_string(real, e);
-    free(real);
-    return copy;
-}
-
 // The length of the folder's part of a path, final slash included; 0 for a bare name.
 static size_t folder_length(const char *path)
 {
     const char *slash = strrchr(path, '/');
     return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+// The path the file will really have: a symbolic link is followed, so that it is not replaced by a plain file.
+static char *resolve_target(const char *path, error *e)
+{
+    enum { MOST_LINKS = 40 };
+    char *target = realpath(path, NULL), to[PATH_MAX];
+    if (target) return target;
+    // Links to a file that is not there yet.
+    target = mem_string(path, e);
+    for (int i = 0; target && i < MOST_LINKS; i++) {
+        ssize_t n = readlink(target, to, sizeof to - 1);
+        if (n <= 0) break;
+        size_t folder = to[0] == '/' ? 0 : folder_length(target), size = folder + (size_t)n + 1;
+        char *next = mem_zero(size, 1, e);
+        if (next) snprintf(next, size, "%.*s%.*s", (int)folder, target, (int)n, to);
+        free(target);
+        target = next;
+    }
+    return target;
 }
 
 static uint64_t random_number(void)
@@ -160,11 +170,14 @@ static bool report_folder(const char *path, const char *target, int code, error 
 
 bool outfile_check_folder(const char *path, error *e)
 {
-    size_t n = folder_length(path);
-    char folder[PATH_MAX] = ".";
-    if (n >= sizeof folder) return true; // creating the file will say so
-    if (n) snprintf(folder, sizeof folder, "%.*s", (int)n, path);
-    return access(folder, W_OK | X_OK) == 0 || report_folder(path, path, errno, e);
+    char folder[PATH_MAX] = ".", *target = resolve_target(path, e);
+    if (!target) return false;
+    size_t n = folder_length(target);
+    if (n && n < sizeof folder) snprintf(folder, sizeof folder, "%.*s", (int)n, target);
+    // Of a path that is too long creating the file will say so.
+    bool ok = n >= sizeof folder || access(folder, W_OK | X_OK) == 0 || report_folder(path, target, errno, e);
+    free(target);
+    return ok;
 }
 
 void outfile_tidy(const char *path)

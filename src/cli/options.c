@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/names.h"
 #include "cli/options_table.h"
 
 #define SEE_HELP "see ssdo-filter --help"
@@ -341,10 +342,20 @@ static bool parse_short(walk *w)
     return true;
 }
 
+static bool fail_pipe(const char *what, error *e)
+{
+    return err_set(e, ERR_USAGE, NULL, NULL,
+                   "%s cannot be '-': nothing goes through a pipe; name a file (./- is one of that name)", what);
+}
+
 static bool add_input(walk *w)
 {
     const char *argument = w->argv[w->at];
     if (!*argument) return err_set(w->e, ERR_USAGE, NULL, NULL, "an input file name is empty; " SEE_HELP);
+    if (strcmp(argument, "-") == 0) return fail_pipe("the input", w->e);
+    char pattern[512];
+    if (w->o->input_count == OPT_MAX_INPUTS && names_are_frames(w->o->inputs[0], argument, pattern, sizeof pattern))
+        return err_set(w->e, ERR_USAGE, argument, NULL, NAMES_SEQUENCE, pattern);
     if (w->o->input_count == OPT_MAX_INPUTS)
         return err_set(w->e, ERR_USAGE, NULL, NULL, "more than %d input files, from '%s' on; run the tool once per group",
                        OPT_MAX_INPUTS, argument);
@@ -359,6 +370,12 @@ static bool check_together(const options *o, error *e)
     if (o->input_count == 0)
         return err_set(e, ERR_USAGE, NULL, NULL, "no input file; usage: ssdo-filter [options] INPUT... -o OUTPUT, " SEE_HELP);
     if (!o->output && !o->explain) return err_set(e, ERR_USAGE, NULL, NULL, "no output file; name it with -o FILE, " SEE_HELP);
+    const struct {
+        const char *name, *path;
+    } targets[] = {{"--output", o->output}, {"--preview", o->preview}, {"--report", o->report}};
+    for (size_t i = 0; i < sizeof targets / sizeof *targets; i++)
+        if (targets[i].path && strcmp(targets[i].path, "-") == 0) return fail_pipe(targets[i].name, e);
+    if (o->output && !names_check_output(o->output, e)) return false;
     if (o->fov > 0 && o->ortho > 0)
         return err_set(e, ERR_USAGE, NULL, NULL, "--fov and --ortho exclude each other; give the one the camera has");
     if (o->verbose && o->quiet) return err_set(e, ERR_USAGE, NULL, NULL, "-v and -q exclude each other; give one");

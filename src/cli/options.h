@@ -24,6 +24,7 @@ typedef enum compose_mode { MODE_RADIANCE, MODE_VISIBILITY } compose_mode;
 typedef struct options {
     const char *inputs[OPT_MAX_INPUTS];
     int input_count;
+    bool literal; // not an option: the inputs are files of exactly these names (cli/names.h)
     const char *output;
 
     const char *layers; // NULL = the default four

@@ -136,6 +136,24 @@ static bool refuse_deep(walker *w)
     return err_set(w->e, ERR_INPUT, w->path, NULL, "holds deep data, which is not supported; flatten it first");
 }
 
+// Compressions that are newer than the library, by the first number of each.
+static const struct {
+    int from;
+    const char *name;
+} newer[] = {{10, "HTJ2K, of OpenEXR 3.4"}, {12, "ZSTD or LJ2K, of OpenEXR 3.5, or a later one"}};
+
+static bool check_compression(walker *w)
+{
+    uint8_t number;
+    const char *name = "";
+    if (!take(w, &number, 1)) return false;
+    if (number < EXR_COMPRESSION_LAST_TYPE) return true;
+    for (size_t i = 0; i < sizeof newer / sizeof *newer; i++)
+        if (number >= newer[i].from) name = newer[i].name;
+    return err_set(w->e, ERR_INPUT, w->path, NULL,
+                   "is compressed by method number %d (%s), which this build cannot read; save it with ZIP or PIZ", number, name);
+}
+
 // One attribute after its name was read. `seen` has a bit for each required one.
 static bool check_attribute(walker *w, attribute *a, unsigned *seen)
 {
@@ -147,6 +165,7 @@ static bool check_attribute(walker *w, attribute *a, unsigned *seen)
         *seen |= 1u << i;
     }
     if (strcmp(a->type, "chlist") == 0) return check_channels(w, a->size);
+    if (strcmp(a->name, "compression") == 0) return check_compression(w);
     char deep[4];
     if (strcmp(a->name, "type") != 0 || a->size < sizeof deep) return skip(w, a->size);
     if (!take(w, deep, sizeof deep)) return false;

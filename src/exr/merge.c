@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "base/mem.h"
+#include "cli/names.h"
 #include "exr/internal.h"
 
 enum { STEM = 256 };
@@ -118,6 +119,16 @@ static bool same_frame(const exr_file *all, error *e)
     return true;
 }
 
+static bool fail_duplicate(const exr_file *all, int part, int channel, int other, error *e)
+{
+    char pattern[512];
+    const char *path = file_of(all, part), *before = file_of(all, other);
+    if (names_are_frames(before, path, pattern, sizeof pattern))
+        return err_set(e, ERR_USAGE, path, NULL, NAMES_SEQUENCE, pattern);
+    return err_set(e, ERR_INPUT, path, all->parts[part].channels[channel].name, "this channel is in %s too; give each pass once",
+                   before);
+}
+
 // Within one file parts may share channel names, and often do.
 static bool no_duplicates(const exr_file *all, error *e)
 {
@@ -127,8 +138,7 @@ static bool no_duplicates(const exr_file *all, error *e)
             for (int a = 0; a < all->parts[i].channel_count; a++)
                 for (int b = 0; b < all->parts[k].channel_count; b++)
                     if (strcmp(all->parts[i].channels[a].name, all->parts[k].channels[b].name) == 0)
-                        return err_set(e, ERR_INPUT, file_of(all, i), all->parts[i].channels[a].name,
-                                       "this channel is in %s too; give each pass once", file_of(all, k));
+                        return fail_duplicate(all, i, a, k, e);
         }
     return true;
 }

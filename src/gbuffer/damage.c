@@ -127,25 +127,55 @@ static double damaged_share(const build *b, role r)
     return b->point_count ? (double)bad / (double)b->point_count : 0.0;
 }
 
-static void warn_dwa(build *b, role r)
+// What a lossy compression does to data, and which channels it does it to.
+typedef struct loss {
+    exr_compression_t first, last;
+    bool (*takes)(const exr_channel *c);
+    const char *name, *how; // of the pass's name: "took the %s pass ..."
+    bool measured;          // worth a word only where the pixels show it
+} loss;
+
+static bool loses_colours(const exr_channel *c) { return lossy_name(c->name); }
+static bool loses_halves(const exr_channel *c) { return c->type == SAMPLE_HALF; }
+static bool loses_floats(const exr_channel *c) { return c->type == SAMPLE_FLOAT; }
+
+static const loss losses[] = {
+    {EXR_COMPRESSION_DWAA, EXR_COMPRESSION_DWAB, loses_colours, "DWA", "took the %s pass for a colour and stored it with loss",
+     false},
+    {EXR_COMPRESSION_B44, EXR_COMPRESSION_B44A, loses_halves, "B44", "stored the half floats of the %s pass with loss", false},
+    {EXR_COMPRESSION_PXR24, EXR_COMPRESSION_PXR24, loses_floats, "PXR24", "cut the floats of the %s pass to 24 bits", true},
+};
+
+static const loss *loss_of(const exr_part *part, const exr_channel *c)
 {
-    char list[300] = "", key[32];
+    for (size_t i = 0; i < sizeof losses / sizeof *losses; i++)
+        if (part->compression >= (int)losses[i].first && part->compression <= (int)losses[i].last && losses[i].takes(c))
+            return &losses[i];
+    return NULL;
+}
+
+static void warn_loss(build *b, role r)
+{
+    const double worth_a_word = 0.01;
+    char list[300] = "", key[32], how[128], measured[64] = "";
+    const loss *found = NULL;
     size_t used = 0;
     for (int k = 0; k < b->r->components[r]; k++) {
         channel_ref ref = b->r->channels[r][k];
-        const exr_part *part = &b->file->parts[ref.part];
-        const char *name = part->channels[ref.channel].name;
-        bool dwa = part->compression == EXR_COMPRESSION_DWAA || part->compression == EXR_COMPRESSION_DWAB;
-        if (dwa && lossy_name(name) && used + strlen(name) + 3 < sizeof list)
-            used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", name);
+        const exr_channel *c = &b->file->parts[ref.part].channels[ref.channel];
+        const loss *l = loss_of(&b->file->parts[ref.part], c);
+        if (l) found = l;
+        if (l && used + strlen(c->name) + 3 < sizeof list)
+            used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", c->name);
     }
-    if (!used) return;
-    snprintf(key, sizeof key, "dwa-%s", role_name(r));
-    char measured[64] = "";
-    if (r != ROLE_DEPTH && (r != ROLE_POSITION || b->has_pose))
-        snprintf(measured, sizeof measured, "; %.0f %% of the pixels show it", 100.0 * damaged_share(b, r));
-    log_warn(b->log, key, "%s: DWA compression took the %s pass for a colour and stored it with loss%s; use ZIP or PIZ for data",
-             list, role_name(r), measured);
+    if (!found) return;
+    bool can_measure = r != ROLE_DEPTH && (r != ROLE_POSITION || b->has_pose);
+    double share = can_measure ? damaged_share(b, r) : 0.0;
+    if (found->measured && share < worth_a_word) return;
+    if (can_measure) snprintf(measured, sizeof measured, "; %.0f %% of the pixels show it", 100.0 * share);
+    snprintf(key, sizeof key, "%s-%s", found->name, role_name(r));
+    snprintf(how, sizeof how, found->how, role_name(r));
+    log_warn(b->log, key, "%s: %s compression %s%s; use ZIP or PIZ for data", list, found->name, how, measured);
 }
 
 bool damage_warn(build *b)
@@ -160,7 +190,7 @@ bool damage_warn(build *b)
         warn_filtered(b, ROLE_POSITION, &l.position);
         warn_filtered(b, ROLE_DEPTH, &l.depth);
         if (!b->row->normals_averaged) warn_filtered(b, ROLE_NORMAL, &l.normal);
-        for (int r = ROLE_POSITION; r <= ROLE_DEPTH; r++) warn_dwa(b, (role)r);
+        for (int r = ROLE_POSITION; r <= ROLE_DEPTH; r++) warn_loss(b, (role)r);
     }
     free(l.z[0]);
     free(l.z[1]);

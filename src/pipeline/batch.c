@@ -50,7 +50,7 @@ typedef struct batch {
     shot_report report;
 } batch;
 
-bool batch_is(const options *o) { return o->frames || (o->input_count > 0 && pattern_is(o->inputs[0])); }
+bool batch_is(const options *o) { return o->frames || (o->input_count > 0 && !o->literal && pattern_is(o->inputs[0])); }
 
 static bool stopping(const batch *b) { return job_stopped(b->j) || b->give_up; }
 

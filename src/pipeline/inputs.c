@@ -10,7 +10,7 @@ bool inputs_of_frame(const options *o, int frame, input_paths *out)
     out->count = o->input_count;
     for (int i = 0; i < o->input_count; i++) {
         bool fits = strlen(o->inputs[i]) < INPUT_PATH;
-        if (pattern_is(o->inputs[i]))
+        if (!o->literal && pattern_is(o->inputs[i]))
             fits = pattern_path(o->inputs[i], frame, out->room[i], INPUT_PATH);
         else if (fits)
             snprintf(out->room[i], INPUT_PATH, "%s", o->inputs[i]);

@@ -43,7 +43,7 @@ void resume_check_device(const job *j, const char *output)
 static bool is_newer(const char *path, const struct stat *output)
 {
     struct stat s;
-    if (!path || pattern_is(path) || stat(path, &s) != 0) return false;
+    if (!path || stat(path, &s) != 0) return false; // a pattern names no file
     if (s.st_mtim.tv_sec != output->st_mtim.tv_sec) return s.st_mtim.tv_sec > output->st_mtim.tv_sec;
     return s.st_mtim.tv_nsec > output->st_mtim.tv_nsec;
 }
