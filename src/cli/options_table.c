@@ -22,7 +22,7 @@ _Static_assert(sizeof(compose_mode) == sizeof(int) && sizeof(radius_unit) == siz
 // clang-format off
 const option_row option_rows[] = {
     {.group = GROUP_OUTPUT, .name = "output", .letter = 'o', .argument = "FILE", .kind = OPT_PATH, .offset = FIELD(output),
-     .help = "The EXR file to write. It is written whole or not at all. Neither it nor the preview or the report may be a file that is read, nor one another."},
+     .help = "The EXR file to write. It is written whole or not at all. Neither it nor the preview or the report may be a file that is read, nor one another. A link is followed; a name that ends as another image format (.png) is refused."},
     {.group = GROUP_OUTPUT, .name = "layers", .argument = "LIST", .kind = OPT_TEXT, .offset = FIELD(layers), .pixels = true,
      .fallback = "occlusion,radiance,indirect,composite",
      .help = "Layers to write, separated by commas. A layer named here that cannot be made is an error; a default one is left out with a warning."},
@@ -207,7 +207,7 @@ const option_row option_rows[] = {
      .fallback = "the display's default", .help = "View of the display for previews."},
     {.group = GROUP_RUN, .name = "frames", .argument = "RANGE", .kind = OPT_TEXT, .offset = FIELD(frames),
      .fallback = "every existing file of the input pattern",
-     .help = "Frames of a sequence: 1-100, 1-100x2, 1-10:4, 1,5,7-9. Input and output then hold a place for the frame: ####, %04d or $F4."},
+     .help = "Frames of a sequence: 1-100, 1-100x2, 1-10:4, 1,5,7-9. Input and output then hold a place for the frame: ####, %04d or $F4. A file of exactly such a name (shot #1.exr) is read where no file fits the pattern, or the output has no such place."},
     {.group = GROUP_RUN, .name = "missing", .argument = "error|skip", .kind = OPT_SWITCH, .offset = FIELD(missing_skip),
      .words = WORDS({"error", 0}, {"skip", 1}), .fallback = "error", .help = "What an input frame that does not exist is."},
     {.group = GROUP_RUN, .name = "skip-existing", .kind = OPT_FLAG, .offset = FIELD(skip_existing),

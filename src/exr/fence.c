@@ -20,6 +20,7 @@ typedef struct walker {
     int fd;
     const char *path;
     uint64_t size, at;
+    bool multipart;
     error *e;
     uint8_t page[4096]; // the bytes from `first` on that were read last
     uint64_t first;
@@ -133,7 +134,7 @@ static bool check_size(walker *w, const attribute *a)
 
 static bool refuse_deep(walker *w)
 {
-    return err_set(w->e, ERR_INPUT, w->path, NULL, "holds deep data, which is not supported; flatten it first");
+    return err_set(w->e, ERR_INPUT, w->path, NULL, "holds only deep data, which is not supported; flatten it first");
 }
 
 // Compressions that are newer than the library, by the first number of each.
@@ -154,8 +155,8 @@ static bool check_compression(walker *w)
                    "is compressed by method number %d (%s), which this build cannot read; save it with ZIP or PIZ", number, name);
 }
 
-// One attribute after its name was read. `seen` has a bit for each required one.
-static bool check_attribute(walker *w, attribute *a, unsigned *seen)
+// One attribute after its name was read. `seen` has a bit for each required one; *deep: it says so of the part.
+static bool check_attribute(walker *w, attribute *a, unsigned *seen, bool *deep)
 {
     if (!take_name(w, a->type) || !take_int(w, &a->size) || !check_size(w, a)) return false;
     for (unsigned i = 0; i < REQUIRED; i++) {
@@ -166,23 +167,26 @@ static bool check_attribute(walker *w, attribute *a, unsigned *seen)
     }
     if (strcmp(a->type, "chlist") == 0) return check_channels(w, a->size);
     if (strcmp(a->name, "compression") == 0) return check_compression(w);
-    char deep[4];
-    if (strcmp(a->name, "type") != 0 || a->size < sizeof deep) return skip(w, a->size);
-    if (!take(w, deep, sizeof deep)) return false;
-    return memcmp(deep, "deep", sizeof deep) == 0 ? refuse_deep(w) : skip(w, a->size - sizeof deep);
+    char type[4];
+    if (strcmp(a->name, "type") != 0 || a->size < sizeof type) return skip(w, a->size);
+    if (!take(w, type, sizeof type)) return false;
+    *deep = memcmp(type, "deep", sizeof type) == 0;
+    if (*deep && !w->multipart) return refuse_deep(w);
+    return skip(w, a->size - sizeof type);
 }
 
 // Attributes up to the empty name that ends a part. *empty: there were none, which ends the list of parts.
-static bool check_part(walker *w, bool *empty)
+static bool check_part(walker *w, bool *empty, bool *deep)
 {
     unsigned seen = 0;
+    *deep = false;
     for (int count = 0;; count++) {
         attribute a;
         if (!take_name(w, a.name)) return false;
         *empty = count == 0;
         if (!a.name[0]) break;
         if (count >= EXR_MAX_ATTRIBUTES) return fail(w, "is damaged: a part has more attributes than any program writes");
-        if (!check_attribute(w, &a, &seen)) return false;
+        if (!check_attribute(w, &a, &seen, deep)) return false;
     }
     for (unsigned i = 0; !*empty && i < REQUIRED; i++)
         if (!(seen & 1u << i))
@@ -193,11 +197,14 @@ static bool check_part(walker *w, bool *empty)
 
 static bool check_parts(walker *w, uint32_t flags)
 {
-    bool empty;
-    if (!(flags & FLAG_MULTIPART)) return check_part(w, &empty) && (!empty || fail(w, "is damaged: its header is empty"));
+    bool empty, deep, flat = false;
+    w->multipart = flags & FLAG_MULTIPART;
+    if (!w->multipart) return check_part(w, &empty, &deep) && (!empty || fail(w, "is damaged: its header is empty"));
     for (int count = 0; count <= EXR_MAX_PARTS; count++) {
-        if (!check_part(w, &empty)) return false;
+        if (!check_part(w, &empty, &deep)) return false;
+        if (empty && count > 0 && !flat) return refuse_deep(w);
         if (empty) return count > 0 || fail(w, "is damaged: it has no parts");
+        flat = flat || !deep;
     }
     return err_set(w->e, ERR_INPUT, w->path, NULL, "has more than %d parts; split it", EXR_MAX_PARTS);
 }
@@ -210,7 +217,7 @@ static bool check_stream(walker *w)
     uint32_t flags = version & ~(uint32_t)VERSION_MASK;
     if ((version & VERSION_MASK) != 2 || (flags & ~(uint32_t)FLAGS_KNOWN))
         return err_set(w->e, ERR_INPUT, w->path, NULL, "is an OpenEXR file of an unknown version; save it as version 2");
-    if (flags & FLAG_DEEP) return refuse_deep(w);
+    if ((flags & FLAG_DEEP) && !(flags & FLAG_MULTIPART)) return refuse_deep(w);
     return check_parts(w, flags);
 }
 

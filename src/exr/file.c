@@ -65,11 +65,20 @@ static void *core_allocate(size_t size)
 }
 static void core_free(void *p) { free(p); }
 
+// The library (3.1.5) wants a version attribute of flat parts too once the file's flags say that some part is deep. Each part's
+// type says it as well, so the flag of a multi-part file is kept from it.
+static void hide_deep_flag(uint8_t *bytes, uint64_t got, uint64_t offset)
+{
+    enum { PLACE = 5, DEEP = 0x08, MULTIPART = 0x10 }; // of the version field's second byte
+    if (offset <= PLACE && offset + got > PLACE && bytes[PLACE - offset] & MULTIPART) bytes[PLACE - offset] &= (uint8_t)~DEEP;
+}
+
 static int64_t read_bytes(exr_const_context_t context, void *user, void *buffer, uint64_t size, uint64_t offset,
                           exr_stream_error_func_ptr_t report)
 {
     const exr_reader *r = user;
     size_t got = infile_read_at(r->fd, buffer, size, offset);
+    hide_deep_flag(buffer, got, offset);
     if (!errno) return (int64_t)got; // the library knows what it needs
     report(context, EXR_ERR_READ_IO, "%s", strerror(errno));
     return -1;
@@ -189,9 +198,8 @@ static bool fill_part(exr_file *file, int index, error *e)
         exr_get_display_window(file->core, index, &display) != EXR_ERR_SUCCESS ||
         exr_get_compression(file->core, index, &compression) != EXR_ERR_SUCCESS)
         return err_set(e, ERR_INPUT, file->path, NULL, "is damaged: part %d lacks a required attribute; render it again", index);
-    if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
-        return err_set(e, ERR_INPUT, file->path, NULL, "holds deep data, which is not supported; flatten it first");
-    p->tiled = storage == EXR_STORAGE_TILED;
+    p->tiled = storage == EXR_STORAGE_TILED || storage == EXR_STORAGE_DEEP_TILED;
+    p->deep = storage == EXR_STORAGE_DEEP_SCANLINE || storage == EXR_STORAGE_DEEP_TILED;
     p->data_window = box_from(data);
     p->display_window = box_from(display);
     p->compression = (int)compression;
@@ -203,7 +211,7 @@ static bool fill_part(exr_file *file, int index, error *e)
     p->name = mem_string(name, e);
     p->view = mem_string(view, e);
     return p->name && p->view && check_window(file, p, e) && fill_channels(file, index, p, e) &&
-           check_chunk_size(file, index, p, e) && exr_fill_views(file, index, p, e);
+           (p->deep || check_chunk_size(file, index, p, e)) && exr_fill_views(file, index, p, e);
 }
 
 bool exr_file_open(const char *path, exr_file **out, error *e)

@@ -2,9 +2,10 @@
 //
 // Reading goes through OpenEXRCore; parts compressed with DWAA/DWAB, which OpenEXRCore 3.1.5 cannot decode, go through the
 // OpenImageIO module (plugin/images.h), opened on demand. Single and multi-part, scanline and tiled (level 0 only), any line
-// order, half/float/uint. Deep parts and subsampled channels are refused with ERR_INPUT. Samples keep their stored type and
-// bits: nothing is converted, so that what is passed through is unchanged. All sizes in the header are checked before memory is
-// taken for them.
+// order, half/float/uint. Subsampled channels are refused with ERR_INPUT, and so is a file
+// that holds deep parts only; a deep part beside a flat one can be copied, and is not looked into. Samples keep their stored type
+// and bits: nothing is converted, so that what is passed through is unchanged. All sizes in the header are checked before memory
+// is taken for them.
 //
 // Pixel space: row-major over the part's own data window, top row first whatever the file's line order.
 #ifndef SSDO_EXR_FILE_H

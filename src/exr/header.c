@@ -159,12 +159,16 @@ exr_result_t exr_put_header(exr_context_t core, const exr_out_part *parts, int c
     exr_result_t rv = EXR_ERR_SUCCESS;
     bool long_names = false;
     for (int i = 0; i < count; i++) long_names |= has_long_name(&parts[i]);
+    bool deep = false;
+    for (int i = 0; i < count; i++) deep |= parts[i].deep;
     if (long_names) rv = exr_set_longname_support(core, 1);
     for (int i = 0; rv == EXR_ERR_SUCCESS && i < count; i++) {
         const exr_out_part *p = &parts[i];
         int index = -1;
-        rv = exr_add_part(core, p->name && p->name[0] ? p->name : NULL, EXR_STORAGE_SCANLINE, &index);
+        rv = exr_add_part(core, p->name && p->name[0] ? p->name : NULL,
+                          p->deep ? EXR_STORAGE_DEEP_SCANLINE : EXR_STORAGE_SCANLINE, &index);
         if (rv == EXR_ERR_SUCCESS) rv = put_required(core, index, p);
+        if (rv == EXR_ERR_SUCCESS && deep) rv = exr_set_version(core, index, 1); // 3.1.5 wants it of flat parts too, as a reader
         if (rv == EXR_ERR_SUCCESS) rv = exr_attr_copy_all(core, index, p);
         for (int a = 0; rv == EXR_ERR_SUCCESS && a < p->attribute_count; a++) rv = put_ours(core, index, &p->attributes[a]);
     }

@@ -200,6 +200,7 @@ static bool load_part(exr_file *file, int index, int threads, bool *fresh, error
 {
     exr_part *p = &file->parts[index];
     bool any = false;
+    if (p->deep) return true;
     for (int i = 0; i < p->channel_count; i++) any |= p->channels[i].wanted && !p->channels[i].data;
     if (!any) return true;
     load_job j = {.file = file, .index = index, .part = p, .fresh = fresh, .error = e};

@@ -45,6 +45,7 @@ typedef struct exr_out_part {
     int channel_count;
     bool verbatim; // copy the chunks of attributes_from's part as they are stored; only if exr_part_is_verbatim says so.
                    // channels: all of that part's, with data NULL
+    bool deep;     // the same of a deep part's lines; verbatim only
     const exr_file
         *attributes_from; // every attribute of this part that is not structural is copied, NULL for none; exr_part_file
     int attributes_part;

@@ -375,24 +375,36 @@ static void list_components(const layer_index *index, const layer_entry *like, c
             used += (size_t)snprintf(out + used, 16 - used, "%s%c", used ? " " : "", *c);
 }
 
+static void list_nameless(const layer_index *index, char *buf, size_t size, size_t *used, int *more)
+{
+    for (int i = 0; i < index->count; i++) {
+        const layer_entry *entry = &index->entries[i];
+        char colours[16];
+        if (entry->layer[0]) continue;
+        list_components(index, entry, "RGBA", colours);
+        if (!entry->component[0] || !strchr("RGBA", entry->component[0]))
+            append(buf, size, used, more, entry->component);
+        else if (entry->component[0] == colours[strlen(colours) - 1])
+            append(buf, size, used, more, colours);
+    }
+}
+
 void layers_list(const layer_index *index, char *buf, size_t size)
 {
     size_t used = 0;
     int more = 0;
     buf[0] = 0;
+    list_nameless(index, buf, size, &used, &more);
     for (int i = 0; i < index->count; i++) {
         const layer_entry *entry = &index->entries[i];
-        bool colour = entry->component[0] && strchr("RGBA", entry->component[0]), first = first_of_layer(index, i);
-        char name[LAYER_NAME + 16], set[16];
-        list_components(index, entry, "RGBA", set);
-        if (entry->layer[0] && first) append(buf, size, &used, &more, entry->layer);
-        if (!entry->layer[0] && colour && entry->component[0] == set[strlen(set) - 1]) append(buf, size, &used, &more, set);
-        if (!entry->layer[0] && !colour) append(buf, size, &used, &more, entry->component);
-        // A named layer is its colour or its vector; what it has besides is named too.
-        if (entry->layer[0] && set[0] && !colour && entry->component[0]) {
-            snprintf(name, sizeof name, "%s.%s", entry->layer, entry->component);
-            append(buf, size, &used, &more, name);
-        }
+        char name[LAYER_NAME + 16], colours[16];
+        if (!entry->layer[0]) continue;
+        if (first_of_layer(index, i)) append(buf, size, &used, &more, entry->layer);
+        // A layer's name stands for its colour or its vector; what a colour has beside it is named too.
+        list_components(index, entry, "RGBA", colours);
+        if (!colours[0] || !entry->component[0] || strchr("RGBA", entry->component[0])) continue;
+        snprintf(name, sizeof name, "%s.%s", entry->layer, entry->component);
+        append(buf, size, &used, &more, name);
     }
     if (more) snprintf(buf + used, size - used, " and %d more", more);
 }

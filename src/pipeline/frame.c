@@ -68,7 +68,8 @@ static resolve_options resolve_options_of(const options *o)
 static void want_channels(const job *j, exr_file *file, const resolution *r, const plan *what)
 {
     for (int p = 0; !j->o->keep_none && p < file->part_count; p++)
-        for (int c = 0; !output_keeps_chunks(j->o, file, p, what) && c < file->parts[p].channel_count; c++)
+        for (int c = 0; !file->parts[p].deep && !output_keeps_chunks(j->o, file, p, what) && c < file->parts[p].channel_count;
+             c++)
             file->parts[p].channels[c].wanted = true;
     for (int i = 0; i < ROLE_COUNT; i++)
         for (int k = 0; k < r->components[i]; k++) {

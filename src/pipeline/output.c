@@ -78,7 +78,7 @@ bool output_check_names(const options *o, const exr_file *file, const char *view
             e, ERR_INPUT, file->path, NULL,
             "--main composite needs the composite layer, which is not made here; add it to --layers, or leave out --main");
     for (int i = 0; !o->keep_none && i < file->part_count; i++)
-        for (int c = 0; c < file->parts[i].channel_count; c++)
+        for (int c = 0; c < file->parts[i].channel_count && !file->parts[i].deep; c++)
             if (is_ours(&n, p, file->parts[i].channels[c].name) && !exr_attr_exists(file, i, "ssdo/version"))
                 return err_set(e, ERR_INPUT, file->path, file->parts[i].channels[c].name,
                                "the input already has a channel that we would write, and it is not ours; use --prefix to name "
@@ -90,6 +90,7 @@ bool output_check_names(const options *o, const exr_file *file, const char *view
 bool output_keeps_chunks(const options *o, const exr_file *file, int part, const plan *p)
 {
     const exr_part *in = &file->parts[part];
+    if (in->deep) return true;
     if (!o->multipart || o->keep_none || o->compression || !exr_part_is_verbatim(in) || file->members) return false;
     for (int v = -1; v < in->view_count; v++) { // of any view, so that the answer is the same for each
         const naming n = {o, file, v < 0 ? NULL : in->views[v]};
@@ -216,6 +217,9 @@ static bool share_a_name(const exr_part *a, const exr_part *b)
     return false;
 }
 
+// Deep parts are copied beside the flat ones, whosever view they are.
+static bool takes(const exr_part *part, const char *view) { return !part->deep && view_has(part, view); }
+
 // A part's name is the layer of its X, Y and Z, which would be lost.
 static bool is_bare_vector(const exr_part *p)
 {
@@ -228,11 +232,11 @@ static bool is_bare_vector(const exr_part *p)
 static bool can_merge(const exr_file *f, const char *view)
 {
     for (int i = 1; i < f->part_count; i++)
-        if (view_has(&f->parts[i], view) && is_bare_vector(&f->parts[i])) return false;
+        if (takes(&f->parts[i], view) && is_bare_vector(&f->parts[i])) return false;
     for (int i = 0; i < f->part_count; i++)
-        for (int k = 0; k < i && view_has(&f->parts[i], view); k++) {
+        for (int k = 0; k < i && takes(&f->parts[i], view); k++) {
             const exr_part *a = &f->parts[i], *b = &f->parts[k];
-            if (!view_has(b, view)) continue;
+            if (!takes(b, view)) continue;
             if (!box2_equal(a->data_window, b->data_window) || !box2_equal(a->display_window, b->display_window) ||
                 share_a_name(a, b))
                 return false;
@@ -299,11 +303,18 @@ static void add_sources(book *k, exr_out_part *part, const frame_result *r)
     for (int i = 0; i < r->file->part_count; i++) {
         int index = i;
         const exr_file *from = exr_part_file(r->file, &index);
-        if (i != r->resolution.main_part && view_has(&r->file->parts[i], r->view))
+        if (i != r->resolution.main_part && takes(&r->file->parts[i], r->view))
             k->sources[k->source_count++] = (exr_source){from, index};
     }
     part->also = first;
     part->also_count = (int)(k->sources + k->source_count - first);
+}
+
+static bool has_deep(const exr_file *f)
+{
+    for (int i = 0; i < f->part_count; i++)
+        if (f->parts[i].deep) return true;
+    return false;
 }
 
 // The view's parts and our layers as one.
@@ -313,13 +324,14 @@ static bool merge_parts(book *k, assembly *a, const job *j, const frame_result *
     const char *view = view_in_names(f, r->view) ? NULL : r->view;
     exr_out_part *only = k->shared = &k->parts[k->part_count++];
     *only = part_like(j->o, f, r->resolution.main_part);
-    if (f->part_count > 1 && !view) only->name = only->view = NULL;
+    if (f->part_count > 1 && !view && !has_deep(f)) only->name = only->view = NULL;
     if (view) only->view = view;
     if (view && !only->name[0]) only->name = view;
+    if (has_deep(f) && !only->name[0]) only->name = "input"; // parts of a multi-part file need names
     if (!room(only, total_channels(f) + MAX_OURS * view_count(r), e)) return false;
     add_sources(k, only, r);
     for (int i = 0; !j->o->keep_none && i < f->part_count; i++)
-        if (view_has(&f->parts[i], r->view))
+        if (takes(&f->parts[i], r->view))
             only->channel_count += keep_channels(j, r, &f->parts[i], true, only->channels + only->channel_count);
     append_ours(a, only);
     return true;
@@ -334,6 +346,7 @@ static bool keep_part(book *k, const job *j, const frame_result *r, int i, error
     if (!room(part, f->parts[i].channel_count, e)) return false;
     part->channel_count = keep_channels(j, r, &f->parts[i], false, part->channels);
     part->verbatim = output_keeps_chunks(j->o, f, i, &r->plan);
+    part->deep = f->parts[i].deep;
     if (!part->name[0]) part->name = "input"; // parts of a multi-part file need names
     return true;
 }
@@ -346,7 +359,7 @@ static bool add_part(book *k, assembly *a, const job *j, frame_result *r, error 
     snprintf(a->part_name, sizeof a->part_name, "ssdo%s%s", view ? "." : "", view ? view : "");
     for (int i = 0; i < f->part_count; i++) {
         bool earlier_run = strcmp(f->parts[i].name, a->part_name) == 0 && exr_attr_exists(f, i, "ssdo/version");
-        if (view_has(&f->parts[i], r->view) && !earlier_run && !keep_part(k, j, r, i, e)) return false;
+        if (takes(&f->parts[i], r->view) && !earlier_run && !keep_part(k, j, r, i, e)) return false;
     }
     exr_out_part *mine = k->shared = &k->parts[k->part_count++];
     *mine = part_like(j->o, f, r->resolution.main_part);
@@ -366,15 +379,22 @@ static bool add_part(book *k, assembly *a, const job *j, frame_result *r, error 
 static bool is_filtered(const exr_part *part, const frame_result *first)
 {
     for (; first; first = first->next_view)
-        if (view_has(part, first->view)) return true;
+        if (takes(part, first->view)) return true;
     return false;
 }
 
-// Parts of no view that was filtered.
+// Parts of no view that was filtered, and deep ones.
 static bool keep_others(book *k, const job *j, const frame_result *first, error *e)
 {
-    for (int i = 0; !j->o->keep_none && i < first->file->part_count; i++)
-        if (!is_filtered(&first->file->parts[i], first) && !keep_part(k, j, first, i, e)) return false;
+    for (int i = 0; !j->o->keep_none && i < first->file->part_count; i++) {
+        if (is_filtered(&first->file->parts[i], first)) continue;
+        const exr_part *part = &first->file->parts[i];
+        if (part->deep && part->tiled)
+            log_warn(j->log, "deep-tiles", "%s: the deep part '%s' is left out: deep tiles cannot be copied (deep scanlines can)",
+                     first->file->path, part->name);
+        else if (!keep_part(k, j, first, i, e))
+            return false;
+    }
     return true;
 }
 
@@ -408,7 +428,7 @@ bool output_write(const job *j, frame_result *r, const char *path, error *e)
     book k = {.parts = mem_zero((size_t)r->file->part_count + VIEWS_MAX, sizeof *k.parts, e)};
     k.sources = k.parts ? mem_zero((size_t)r->file->part_count * (size_t)view_count(r), sizeof *k.sources, e) : NULL;
     bool ok = k.sources != NULL;
-    bool others_first = !is_filtered(&r->file->parts[0], r); // the default view stays the first
+    bool others_first = !is_filtered(&r->file->parts[0], r) && !r->file->parts[0].deep; // the default view stays the first
     if (ok && others_first) ok = keep_others(&k, j, r, e);
     for (frame_result *v = r; ok && v; v = v->next_view) ok = add_view(&k, j, v, e);
     if (ok && !others_first) ok = keep_others(&k, j, r, e);

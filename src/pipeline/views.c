@@ -15,6 +15,7 @@ static int all_views(const exr_file *file, const char *names[VIEWS_MAX])
     int count = 0;
     for (int i = 0; i < file->part_count; i++) {
         const exr_part *p = &file->parts[i];
+        if (p->deep) continue;
         const char *const own[1] = {p->view}, *const *views = p->view[0] ? own : (const char *const *)p->views;
         for (int v = 0; v < (p->view[0] ? 1 : p->view_count) && count < VIEWS_MAX; v++)
             if (!listed(names, count, views[v])) names[count++] = views[v];
