@@ -116,6 +116,7 @@ bool gpu_transfer_start(gpu *g, const gpu_image *image, int y, int rows, gpu_tra
     gpu_image_download_rows(g, image, y, rows, NULL);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     put_fence(b);
+    glFlush(); // the device begins now, not when somebody waits
     *t = (gpu_transfer){b, b->mapped};
     return true;
 }

@@ -156,6 +156,21 @@ static int channel_count(const exr_file *f, const char *eye, const char *name)
     return n;
 }
 
+// Both eyes' layers under way at a time, as in a sequence on hardware.
+static void filter_together(const char *in, const frame_result *both)
+{
+    error e = {0};
+    frame_result r;
+    work.g.mapped = true;
+    must(frame_read(&work, in, &r, &e) && frame_prepare(&work, &r, &e) && frame_begin(&work, &r, &e), &e);
+    assert_true(r.bands && r.next_view->bands);
+    must(frame_wait(&work, &r, &e) && frame_convert(&work, &r, &e), &e);
+    same_layers(&r, both);
+    same_layers(r.next_view, both->next_view);
+    frame_free(&r);
+    work.g.mapped = false;
+}
+
 // Each eye's layers are what its own file gives.
 static void filter_both(const char *in, const char *out)
 {
@@ -172,6 +187,7 @@ static void filter_both(const char *in, const char *out)
         frame_free(&one);
     }
     assert_null(v);
+    filter_together(in, &both);
     assert_true(fabs(both.gb.camera.fx / both.next_view->gb.camera.fx - 1.0) > 0.05); // each has its own lens
     frame_free(&both);
 }
