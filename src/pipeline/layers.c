@@ -4,13 +4,20 @@
 #include <string.h>
 
 const layer_info layer_table[LAYER_COUNT] = {
-    [LAYER_OCCLUSION] = {"occlusion", "R", true},    [LAYER_RADIANCE] = {"radiance", "RGB", true},
-    [LAYER_INDIRECT] = {"indirect", "RGB", true},    [LAYER_COMPOSITE] = {"composite", "RGB", true},
-    [LAYER_VISIBILITY] = {"visibility", "R", false}, [LAYER_SPECULAR] = {"specular", "RGB", false},
-    [LAYER_DIFFUSE] = {"diffuse", "RGB", false},     [LAYER_DEPTHMASK] = {"depthmask", "R", false},
-    [LAYER_BENT] = {"bent", "XYZ", false},           [LAYER_SH_0] = {"sh_0", "RGB", false},
-    [LAYER_SH_1] = {"sh_1", "RGB", false},           [LAYER_SH_2] = {"sh_2", "RGB", false},
-    [LAYER_SH_3] = {"sh_3", "HIJKLMN", false},       [LAYER_ERROR] = {"error", "R", false},
+    [LAYER_OCCLUSION] = {"occlusion", "R", RANGE_SHARE, true},
+    [LAYER_RADIANCE] = {"radiance", "RGB", RANGE_LIGHT, true},
+    [LAYER_INDIRECT] = {"indirect", "RGB", RANGE_LIGHT, true},
+    [LAYER_COMPOSITE] = {"composite", "RGB", RANGE_ANY, true},
+    [LAYER_VISIBILITY] = {"visibility", "R", RANGE_SHARE, false},
+    [LAYER_SPECULAR] = {"specular", "RGB", RANGE_LIGHT, false},
+    [LAYER_DIFFUSE] = {"diffuse", "RGB", RANGE_ANY, false},
+    [LAYER_DEPTHMASK] = {"depthmask", "R", RANGE_ANY, false},
+    [LAYER_BENT] = {"bent", "XYZ", RANGE_ANY, false},
+    [LAYER_SH_0] = {"sh_0", "RGB", RANGE_ANY, false},
+    [LAYER_SH_1] = {"sh_1", "RGB", RANGE_ANY, false},
+    [LAYER_SH_2] = {"sh_2", "RGB", RANGE_ANY, false},
+    [LAYER_SH_3] = {"sh_3", "HIJKLMN", RANGE_ANY, false},
+    [LAYER_ERROR] = {"error", "R", RANGE_LIGHT, false},
 };
 
 static bool unknown(const char *name, size_t n, error *e)

@@ -26,9 +26,17 @@ typedef enum layer_id {
 
 enum { LAYER_CHANNELS = 7 }; // of a layer, at most
 
+// What a sample can be. NaN and infinity none can.
+typedef enum layer_range {
+    RANGE_ANY,
+    RANGE_LIGHT, // not negative
+    RANGE_SHARE, // 0 to 1
+} layer_range;
+
 typedef struct layer_info {
     const char *name;
     const char *channels; // one letter each, "RGB"
+    layer_range range;
     bool by_default;
 } layer_info;
 

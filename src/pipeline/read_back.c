@@ -31,7 +31,7 @@ static int images_of(layer_id l) { return channels_of(l) > 4 ? 2 : 1; }
 
 // ---- conversion
 
-// A layer never holds NaN or infinity, whatever happened before; occlusion stays in 0..1 and light is not negative.
+// A layer never holds NaN or infinity, whatever happened before, and keeps its range.
 static inline float sane(float v, bool share, bool light)
 {
     if (!(fabsf(v) <= 3e38f)) v = share ? 1.0f : isnan(v) ? 0.0f : copysignf(3e38f, v);
@@ -42,8 +42,7 @@ static inline float sane(float v, bool share, bool light)
 // One channel of every `stride` floats.
 static void sanitise(layer_id l, const float *v, size_t stride, size_t pixels, float *to)
 {
-    bool share = l == LAYER_OCCLUSION || l == LAYER_VISIBILITY,
-         light = l == LAYER_RADIANCE || l == LAYER_INDIRECT || l == LAYER_SPECULAR || l == LAYER_ERROR;
+    bool share = layer_table[l].range == RANGE_SHARE, light = layer_table[l].range == RANGE_LIGHT;
     for (size_t i = 0; i < pixels; i++) to[i] = sane(v[i * stride], share, light);
 }
 

@@ -11,10 +11,12 @@
 
 #include <cmocka.h>
 #include <json-c/json.h>
+#include <math.h>
 
 #include "gpu/transfer.h"
 #include "must.h"
 #include "pipeline/batch.h"
+#include "pipeline/read_back.h"
 #include "scene_picture.h"
 
 enum { WIDTH = 150, HEIGHT = 70, FRAMES = 7, MISSING = 4 };
@@ -119,6 +121,75 @@ static void layers_are_the_same(void **state)
             unmake(&other);
         }
         unmake(&usual);
+    }
+}
+
+// ---- what no pass should make
+
+// Values of a picture, and what is written of them in the layers of each range: bits of a half, and whether it counts as clamped.
+static const struct {
+    float v;
+    uint16_t any, light, share;
+    bool any_clamped, light_clamped;
+} odd[] = {
+    {0.5f, 0x3800, 0x3800, 0x3800, false, false},
+    {NAN, 0, 0, 0x3c00, false, false},
+    {INFINITY, 0x7bff, 0x7bff, 0x3c00, true, true},
+    {-INFINITY, 0xfbff, 0, 0x3c00, true, false},
+    {1e10f, 0x7bff, 0x7bff, 0x3c00, true, true},
+    {-1e10f, 0xfbff, 0, 0, true, false},
+    {65504.0f, 0x7bff, 0x7bff, 0x3c00, false, false},
+    {65505.0f, 0x7bff, 0x7bff, 0x3c00, true, true},
+    {-2.0f, 0xc000, 0, 0, false, false},
+    {0x1.002p+0f, 0x3c00, 0x3c00, 0x3c00, false, false}, // half way: to the even one below
+    {0x1.006p+0f, 0x3c02, 0x3c02, 0x3c00, false, false}, // and above
+    {0x1p-25f, 0, 0, 0, false, false},
+    {0x1.8p-25f, 1, 1, 1, false, false},
+};
+
+static void check_odd(const frame_result *r)
+{
+    size_t count = sizeof odd / sizeof *odd, clamped = 0;
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+        const uint16_t expected[] = {odd[i % count].share, odd[i % count].light, odd[i % count].any};
+        const layer_id layers[] = {LAYER_OCCLUSION, LAYER_RADIANCE, LAYER_COMPOSITE};
+        for (int l = 0; l < 3; l++)
+            for (int k = 0; k < (l ? 3 : 1); k++) assert_int_equal(((const uint16_t *)r->samples[layers[l]][k])[i], expected[l]);
+        clamped += 3u * (odd[i % count].any_clamped + odd[i % count].light_clamped);
+    }
+    assert_int_equal(r->clamped, clamped);
+}
+
+static void odd_values_keep_their_range(void **state)
+{
+    static const way ways[] = {{true, 0, 2}, {true, 20000, 3}, {false, 0, 1}, {false, 0, 3}};
+    static float v[WIDTH * HEIGHT * 4], one[WIDTH * HEIGHT];
+    (void)state;
+    for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
+        one[i] = odd[i % (sizeof odd / sizeof *odd)].v;
+        for (size_t k = 0; k < 4; k++) v[4 * i + k] = one[i];
+    }
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        error e = {0};
+        options o;
+        log_t log;
+        job j;
+        frame_result r = {.gb = {.width = WIDTH, .height = HEIGHT}};
+        options_defaults(&o);
+        open_job(&j, &o, &log, &ways[i]);
+        pass_context c = {.g = &j.g};
+        gpu_image *const images[] = {&c.occlusion, &c.radiance, &c.composite};
+        for (int k = 0; k < 3; k++) {
+            must(gpu_image_make(&j.g, images[k], k ? GL_RGBA32F : GL_R32F, WIDTH, HEIGHT, 1, &e), &e);
+            must(gpu_image_send(&j.g, images[k], k ? v : one, &e), &e);
+        }
+        r.plan.layers = 1u << LAYER_OCCLUSION | 1u << LAYER_RADIANCE | 1u << LAYER_COMPOSITE;
+        must(read_back_begin(&j, &c, &r, &e) && read_back_finish(&j, &r, &e), &e);
+        check_odd(&r);
+        for (int k = 0; k < 3; k++) gpu_image_free(images[k]);
+        frame_free(&r);
+        job_close(&j);
+        log_free(&log);
     }
 }
 
@@ -313,9 +384,8 @@ static int tear_down(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(layers_are_the_same),
-        cmocka_unit_test(pictures_arrive_whole),
-        cmocka_unit_test(buffers_are_kept_apart),
+        cmocka_unit_test(layers_are_the_same),    cmocka_unit_test(odd_values_keep_their_range),
+        cmocka_unit_test(pictures_arrive_whole),  cmocka_unit_test(buffers_are_kept_apart),
         cmocka_unit_test(sequences_are_the_same),
     };
     return cmocka_run_group_tests_name("transfer", tests, set_up, tear_down);
