@@ -79,7 +79,7 @@ const convention conventions[] = {
         .marks = {"vrayInfo/*"},
         .patterns =
             {
-                [ROLE_POSITION] = {"VRayWorldPosition", "world_position", "worldPosition"},
+                [ROLE_POSITION] = {"VRayWorldPosition", "VRaySamplerInfo", "VRaySamplerInfo_World", "world_position"},
                 [ROLE_NORMAL] = {"normals", "VRayNormals", "bump_normals", "bumpnormals", "VRayBumpNormals"},
                 [ROLE_DEPTH] = {"/Z", "VRayZDepth", "zDepth"},
                 [ROLE_ALBEDO] = {"VRayDiffuseFilter", "diffuse", "diffuseFilter"},
@@ -191,8 +191,8 @@ const convention conventions[] = {
         .patterns =
             {
                 [ROLE_POSITION] = {"position", "pos", "pp", "P"},
-                [ROLE_NORMAL] = {"sh_normal", "geo_normal", "normal", "nn", "N"},
-                [ROLE_DEPTH] = {"depth/T", "*/T"},
+                [ROLE_NORMAL] = {"sh_normal", "geo_normal", "normal", "nn", "N"}, // shNormal, geoNormal: Mitsuba 0.6's field
+                [ROLE_DEPTH] = {"depth/T", "*/T", "distance"},
                 [ROLE_ALBEDO] = {"albedo"},
             },
         .albedo = ALBEDO_BASE,
@@ -238,15 +238,46 @@ const convention conventions[] = {
         .camera = {.pose = "worldToCamera", .world_to_camera = true, .looks_along_z = true},
     },
     {
+        // Render elements by their classes' names; the artist may clamp and invert the depth.
+        .name = "corona",
+        .marks = {"corona*", "Software=Corona"},
+        .patterns =
+            {
+                [ROLE_POSITION] = {"CGeometry_WorldPosition"},
+                [ROLE_NORMAL] = {"CGeometry_NormalsShading", "CGeometry_NormalsGeometry"},
+                [ROLE_DEPTH] = {"CGeometry_ZDepth"},
+                [ROLE_ALBEDO] = {"CShading_Albedo", "CShading_SourceColor"},
+            },
+        .albedo = ALBEDO_BASE,
+        .depth = DEPTH_PLANAR,
+        .background_depth = FAR_AWAY,
+        .up_is_z = true,
+    },
+    {
+        // Radeon ProRender's AOVs by their names in its plug-ins.
+        .name = "prorender",
+        .patterns =
+            {
+                [ROLE_POSITION] = {"World Coordinate"},
+                [ROLE_NORMAL] = {"Shading Normal", "Geometric Normal", "Camera Normal"},
+                [ROLE_DEPTH] = {"Depth"},
+                [ROLE_ALBEDO] = {"Diffuse Albedo"},
+            },
+        .diffuse_albedo = {"Diffuse Albedo"},
+        .albedo = ALBEDO_BASE,
+        .depth = DEPTH_PLANAR,
+        .background_depth = FAR_AWAY,
+    },
+    {
         // Common names of no renderer in particular. The last row: other rows fall back on it.
         .name = "plain",
         .confirmed = true,
         .patterns =
             {
-                [ROLE_POSITION] = {"P", "position", "Pworld", "world_position", "worldposition"},
-                [ROLE_NORMAL] = {"N", "normal", "normals", "Nworld", "world_normal", "worldnormal"},
+                [ROLE_POSITION] = {"P", "position", "Pworld", "world_position", "Pcam", "VRaySamplerInfo", "pos"},
+                [ROLE_NORMAL] = {"N", "normal", "normals", "Nworld", "world_normal", "Ncam", "shnormal", "nrm"},
                 [ROLE_DEPTH] = {"/Z", "Z", "depth", "zdepth"},
-                [ROLE_ALBEDO] = {"albedo", "diffuse_albedo", "diffuse_color", "diffcol", "base_color", "basecolor"},
+                [ROLE_ALBEDO] = {"albedo", "diffuse_albedo", "diffuse_color", "diffcol", "base_color", "alb"},
                 [ROLE_BEAUTY] = {"/", "beauty", "rgba", "rgb", "combined", "Ci", "C"},
                 [ROLE_ALPHA] = {"/A", "beauty/A", "rgba/A", "combined/A", "Ci/A", "alpha", "/alpha"},
                 [ROLE_ROUGHNESS] = {"roughness"},

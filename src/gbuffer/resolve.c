@@ -212,7 +212,19 @@ static bool pick(const search *s, const char *pattern, role r, const char *key, 
     return false;
 }
 
-// *row and *pattern receive what found it.
+static bool detect_in(const search *s, const convention *in, const char *key, role r, const resolution *so_far, layer_group *out,
+                      const convention **row, const char **pattern)
+{
+    for (int p = 0; p < CONVENTION_PATTERNS && in->patterns[r][p]; p++)
+        if (pick(s, in->patterns[r][p], r, key, so_far, out)) {
+            *row = in, *pattern = in->patterns[r][p];
+            return true;
+        }
+    return false;
+}
+
+// *row and *pattern receive what found it. Positions and normals are looked for under every renderer's names in the end: whose
+// they are is seen from the pixels.
 static bool detect(const search *s, role r, const resolution *so_far, layer_group *out, const convention **row,
                    const char **pattern)
 {
@@ -220,11 +232,9 @@ static bool detect(const search *s, role r, const resolution *so_far, layer_grou
     const convention *rows[2] = {s->row, s->plain};
     for (int scope = 0; scope < 3; scope++)
         for (int i = 0; i < 2; i++)
-            for (int p = 0; p < CONVENTION_PATTERNS && rows[i]->patterns[r][p]; p++)
-                if (pick(s, rows[i]->patterns[r][p], r, scopes[scope], so_far, out)) {
-                    *row = rows[i], *pattern = rows[i]->patterns[r][p];
-                    return true;
-                }
+            if (detect_in(s, rows[i], scopes[scope], r, so_far, out, row, pattern)) return true;
+    for (int i = 0; (r == ROLE_POSITION || r == ROLE_NORMAL) && i < convention_count; i++)
+        if (detect_in(s, &conventions[i], s->key, r, so_far, out, row, pattern)) return true;
     return false;
 }
 

@@ -381,6 +381,55 @@ static void test_lists(void **state)
     assert_non_null(strstr(e.message, "layer_39;"));
 }
 
+// Names seen in public files and in renderers' sources, as layers of what they are; and those that only look like it.
+static void test_names(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *layer, *components;
+        role role; // ROLE_COUNT: none
+    } names[] = {
+        {"VRaySamplerInfo", "R,G,B", ROLE_POSITION},
+        {"World Position", "R,G,B", ROLE_POSITION},
+        {"world-position", "X,Y,Z", ROLE_POSITION},
+        {"WorldPosition", "X,Y,Z", ROLE_POSITION},
+        {"Info:Position", "R,G,B", ROLE_POSITION},
+        {"Position", "[red],[green],[blue]", ROLE_POSITION},
+        {"Pcam", "X,Y,Z", ROLE_POSITION},
+        {"P_cam", "x,y,z", ROLE_POSITION},
+        {"P_world", "x,y,z", ROLE_POSITION},
+        {"CGeometry_WorldPosition", "R,G,B", ROLE_POSITION},
+        {"World Coordinate", "X,Y,Z", ROLE_POSITION},
+        {"ShNormal", "X,Y,Z", ROLE_NORMAL},
+        {"normals", "R,G,B", ROLE_NORMAL},
+        {"worldNormal", "R,G,B", ROLE_NORMAL},
+        {"World Normal", "R,G,B", ROLE_NORMAL},
+        {"N_cam", "X,Y,Z", ROLE_NORMAL},
+        {"N_world", "X,Y,Z", ROLE_NORMAL},
+        {"Info:Normal", "R,G,B", ROLE_NORMAL},
+        {"CGeometry_NormalsShading", "R,G,B", ROLE_NORMAL},
+        {"Pref", "X,Y,Z", ROLE_COUNT},
+        {"__Pref", "r,g,b", ROLE_COUNT},
+        {"P_ref", "X,Y,Z", ROLE_COUNT},
+        {"Nref", "X,Y,Z", ROLE_COUNT},
+        {"Position Offset", "X,Y,Z", ROLE_COUNT},
+        {"motionvector", "X,Y,Z", ROLE_COUNT},
+    };
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char of[400] = "R,G,B,A,Z", copy[64], *rest = copy;
+        snprintf(copy, sizeof copy, "%s", names[i].components);
+        for (char *c; (c = strsep(&rest, ","));) snprintf(of + strlen(of), sizeof of - strlen(of), ",%s.%s", names[i].layer, c);
+        // with() parts a part's name at the first colon
+        char whole[420];
+        snprintf(whole, sizeof whole, "%s%s", strchr(of, ':') ? "one:" : "", of);
+        resolution r = resolved(whole, NULL);
+        for (int k = ROLE_POSITION; k <= ROLE_NORMAL; k++)
+            if ((r.components[k] > 0) != (names[i].role == (role)k)) fail_msg("%s as %s", names[i].layer, role_name((role)k));
+        check(&r, ROLE_DEPTH, "Z");
+        check(&r, ROLE_BEAUTY, "R");
+    }
+}
+
 static void test_view_layers(void **state)
 {
     (void)state;
@@ -465,6 +514,7 @@ int main(void)
         cmocka_unit_test(test_one_role_each),
         cmocka_unit_test(test_file_names),
         cmocka_unit_test(test_lists),
+        cmocka_unit_test(test_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
