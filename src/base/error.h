@@ -18,6 +18,7 @@ typedef enum error_code {
     ERR_OUTPUT = 4,
     ERR_GL = 5,
     ERR_MEMORY = 6,
+    ERR_DOUBT = 7, // --strict
 } error_code;
 
 typedef struct error {

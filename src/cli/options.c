@@ -313,6 +313,11 @@ static bool parse_long(walk *w)
     const char *value = name[length] == '=' ? name + length + 1 : NULL;
     const option_row *row = find_name(name, length);
     if (!row) return fail_unknown(argument, w->e);
+    if (row->kind == OPT_FLAG && value && row->words) {
+        if (!find_word(row, value)) return fail_value(row, value, w->e);
+        *(bool *)((char *)w->o + row->word_offset) = true;
+        value = NULL;
+    }
     if (row->kind == OPT_FLAG && value)
         return err_set(w->e, ERR_USAGE, NULL, NULL, "--%s takes no value, but '%s' was given; " SEE_HELP, row->name, value);
     if (row->kind != OPT_FLAG && !value && !(value = next_value(w, row))) return false;

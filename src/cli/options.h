@@ -90,8 +90,9 @@ typedef struct options {
     progress_form progress;
     int device; // -1 = first usable
     bool list_devices;
-    int threads; // 0 = default
-    bool explain;
+    int threads;                // 0 = default
+    bool explain, explain_json; // --explain, --explain=json
+    bool strict;
     bool verbose, quiet, help, version;
     const char *completion; // print the completion script of this shell
 } options;

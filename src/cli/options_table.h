@@ -10,7 +10,7 @@
 #include <stddef.h>
 
 typedef enum option_kind {
-    OPT_FLAG,   // bool, no argument: becomes true
+    OPT_FLAG,   // bool, no argument: becomes true; with words, one may follow "=" and sets a second bool
     OPT_SWITCH, // bool, one of the words
     OPT_ENUM,   // int or enum, one of the words
     OPT_CHOICE, // const char *, one of the words
@@ -47,6 +47,7 @@ typedef struct option_row {
     option_kind kind;         //
     size_t offset;            // of the field in `options`
     const option_word *words; // ends with a NULL text; NULL for none
+    size_t word_offset;       // of a flag's second bool
     double min, max;          // bounds of a number
     bool open;                // the bounds themselves are not allowed
     bool may_be_empty;        // an OPT_TEXT may be ""

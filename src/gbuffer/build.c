@@ -96,6 +96,8 @@ static bool summarise(build *b)
                  "no usable normals in the file: they are rebuilt from depth and show its facets "
                  "(--normal names a channel)");
     defects_warn(b);
+    g->position_verdict.used = g->position_verdict.present && b->has_position;
+    g->depth_verdict.used = g->depth_verdict.present && b->has_depth;
     if (g->position_is_camera_space) g->camera.has_world = false;
     if (b->has_header_pose)
         g->camera.world_from_camera = b->world_from_camera, g->camera.origin = b->eye, g->camera.has_world = true;
@@ -112,12 +114,12 @@ bool gbuffer_build(const exr_file *file, const resolution *r, const gbuffer_opti
 {
     *out = (gbuffer){0};
     build b = {.file = file, .r = r, .options = options, .g = out, .log = log, .e = e, .row = convention_named(r->convention)};
-    bool done = open_frame(&b) && depth_open(&b) && validity_find(&b) && choose_camera(&b) && depth_settle(&b) &&
-                positions_raw(&b) && measure_normals(&b) && damage_warn(&b);
+    bool done = open_frame(&b) && depth_open(&b) && validity_find(&b) && choose_camera(&b) && orthographic_settle(&b) &&
+                depth_settle(&b) && positions_raw(&b) && measure_normals(&b) && damage_warn(&b);
     if (done) {
         positions_final(&b);
         normals_make(&b);
-        done = albedo_make(&b) && coverage_make(&b) && colours_make(&b) && summarise(&b);
+        done = filtered_mend(&b) && albedo_make(&b) && coverage_make(&b) && colours_make(&b) && summarise(&b);
     }
     free(b.surface);
     free(b.raw);
@@ -125,6 +127,13 @@ bool gbuffer_build(const exr_file *file, const resolution *r, const gbuffer_opti
     free(b.point_depth);
     if (!done) gbuffer_free(out);
     return done;
+}
+
+const char *gbuffer_doubt(const gbuffer *g)
+{
+    if (g->position_verdict.doubtful) return role_name(ROLE_POSITION);
+    if (g->depth_verdict.doubtful) return role_name(ROLE_DEPTH);
+    return g->normal_verdict.doubtful ? role_name(ROLE_NORMAL) : NULL;
 }
 
 void gbuffer_free(gbuffer *g)

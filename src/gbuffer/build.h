@@ -66,6 +66,7 @@ typedef struct build {
     bool depth_wins;       // z comes from Z
     double depth_offset;   // orthographic: z = Z + offset
     double far_pixels;     // P further than this from its pixel is not believed
+    unsigned filtered;     // bits of the roles whose pixels are means over the pixel (damage.c)
     bool lateral;          // P is fine enough to tell where in its pixel it was sampled
     double depth_rounding; // of raw, in scene units, and the depth it is meant at: medians
     double typical_depth;
@@ -131,6 +132,9 @@ bool validity_find(build *b);
 // choose_camera.c: the camera by flag, fit, header or plane.
 bool choose_camera(build *b);
 
+// orthographic.c: the direction that an orthographic fit leaves open.
+bool orthographic_settle(build *b);
+
 // depth_hypotheses.c: the depth's sign and the kind that an option says; then, with the camera known, the kind of a depth that no
 // positions explain, which may find the surfaces anew. An error where depth cannot be read without a range.
 bool depth_open(build *b);
@@ -152,11 +156,16 @@ void positions_final(build *b);
 // normals.c
 // The file's normal at a pixel, unit, in camera space; false where it is zero or not finite.
 bool normals_read(const build *b, int x, int y, vec3 *n);
+// The file's normal at a pixel in camera space, decoded, of its stored length; 0 where it has none.
+vec3 normals_stored(const build *b, int x, int y);
 // |N| as stored (for coverage); 0 when absent or not finite.
 double normals_length(const build *b, int x, int y);
 // The normal of the surface through the neighbours' depths, facing the eye.
 vec3 normals_from_depth(const build *b, const float *depth, int x, int y);
 void normals_make(build *b);
+
+// filtered.c: gives the pixels that a filter mixed one surface, after depth and normals are made.
+bool filtered_mend(build *b);
 
 // defects.c: one warning for each kind of sample that could not be used, if it touches more than a thousandth of the pixels.
 void defects_warn(build *b);

@@ -1,4 +1,5 @@
 // The camera of the frame: flag, then fit, then header, then one plane.
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,6 +8,8 @@
 #include "gbuffer/camera_header.h"
 #include "gbuffer/camera_solve.h"
 #include "gbuffer/solve.h"
+
+static const double least_inliers = 0.5;
 
 static bool from_flag(build *b, bool *given)
 {
@@ -154,6 +157,26 @@ static void find_header_pose(build *b, const camera *c)
     b->has_header_pose = true;
 }
 
+// What the positions are, and whether they are what they are taken for: most lie on the rays of their pixels.
+static void judge_positions(build *b)
+{
+    const camera *c = &b->g->camera;
+    verdict *v = &b->g->position_verdict;
+    if (!b->has_pose) return;
+    const char *space = b->g->position_is_camera_space ? "camera space" : "world space";
+    snprintf(v->reading, sizeof v->reading, "%s%s", space, m3_det(c->world_from_camera) < 0.0 ? ", left-handed" : "");
+    v->measure = "median distance in pixels between the positions and their pixels";
+    v->fit = c->residual;
+    verdict_try(v, v->reading, c->residual, c->residual);
+    v->doubtful = c->inliers < least_inliers;
+    if (v->doubtful)
+        log_warn(
+            b->log, "position-doubt",
+            "only %.0f %% of the positions lie within half a pixel of their own pixels (median %.2g pixels): they may be those "
+            "of a reference pose, of another frame or another camera (--position names another layer)",
+            100.0 * c->inliers, c->residual);
+}
+
 static bool finish(build *b, camera *c)
 {
     if (b->has_position && c->has_world) {
@@ -170,6 +193,7 @@ static bool finish(build *b, camera *c)
     }
     find_header_pose(b, c);
     describe(b);
+    judge_positions(b);
     return true;
 }
 
@@ -177,6 +201,7 @@ bool choose_camera(build *b)
 {
     camera *c = &b->g->camera;
     bool given;
+    b->g->position_verdict = (verdict){.present = b->has_position, .fit = (double)NAN, .next = (double)NAN};
     if (!from_flag(b, &given)) return false;
     if (b->point_count == 0) {
         // Nothing to see: any camera will do.
@@ -189,6 +214,7 @@ bool choose_camera(build *b)
         if (!b->has_depth)
             return err_set(b->e, ERR_INPUT, b->file->path, NULL,
                            "the camera's pose cannot be found from the positions; give it with --camera (world_from_camera)");
+        b->g->position_verdict.doubtful = true;
         log_warn(b->log, "pose-unknown", "the camera's pose cannot be found from the positions; depth is used instead of them");
         b->has_position = false;
         return finish(b, c);

@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "gbuffer/build.h"
 
-enum { LOOKED_AT_ROWS = 256, LEAST_EDGES = 30 };
+enum { LOOKED_AT_ROWS = 256, LEAST_EDGES = 30, REACHES = 2 }; // a filter is one to four pixels wide
 static const double most_between = 0.3; // share of the edges that may have a value in between: thin things do
 static const double worst_length = 0.002;
 
@@ -19,14 +19,14 @@ typedef struct edges {
 
 static bool filtered(const edges *e) { return e->all >= LEAST_EDGES && (double)e->between > most_between * (double)e->all; }
 
-// Depths of a row, 0 where there is no surface. An edge: two pixels on each side that agree among themselves and differ from the
-// other side; the pixel between belongs to one side if it was sampled at a point.
-static void count_depth(const double *z, int n, edges *out)
+// Depths of a row, 0 where there is no surface. An edge: on each side of a pixel, `reach` away, two pixels that agree among
+// themselves and differ from the other side; the pixel between belongs to one side if it was sampled at a point.
+static void count_depth(const double *z, int n, int reach, edges *out)
 {
-    for (int x = 2; x < n - 2; x++) {
-        double a = z[x - 1], c = z[x + 1], step = fabs(a - c);
-        if (!(a > 0.0 && c > 0.0 && z[x] > 0.0 && z[x - 2] > 0.0 && z[x + 2] > 0.0)) continue;
-        if (step < 0.1 * fmin(a, c) || fabs(a - z[x - 2]) > 0.1 * step || fabs(c - z[x + 2]) > 0.1 * step) continue;
+    for (int x = reach + 1; x < n - reach - 1; x++) {
+        double a = z[x - reach], b = z[x - reach - 1], c = z[x + reach], d = z[x + reach + 1], step = fabs(a - c);
+        if (!(a > 0.0 && c > 0.0 && z[x] > 0.0 && b > 0.0 && d > 0.0)) continue;
+        if (step < 0.1 * fmin(a, c) || fabs(a - b) > 0.1 * step || fabs(c - d) > 0.1 * step) continue;
         double share = (z[x] - a) / (c - a);
         out->all++;
         out->between += share > 0.1 && share < 0.9;
@@ -34,18 +34,18 @@ static void count_depth(const double *z, int n, edges *out)
 }
 
 // The mean of two unit normals is shorter than they are.
-static void count_normals(const vec3 *n, int count, edges *out)
+static void count_normals(const vec3 *n, int count, int reach, edges *out)
 {
-    for (int x = 1; x < count - 1; x++) {
-        double a = v3_length(n[x - 1]), b = v3_length(n[x]), c = v3_length(n[x + 1]);
-        if (!(a > 0.99 && c > 0.99 && b > 0.0) || v3_dot(n[x - 1], n[x + 1]) > 0.8) continue;
+    for (int x = reach; x < count - reach; x++) {
+        double a = v3_length(n[x - reach]), b = v3_length(n[x]), c = v3_length(n[x + reach]);
+        if (!(fabs(a - 1.0) < 0.01 && fabs(c - 1.0) < 0.01 && b > 0.0) || v3_dot(n[x - reach], n[x + reach]) > 0.8) continue;
         out->all++;
         out->between += b < 0.98;
     }
 }
 
 typedef struct look {
-    edges position, normal, depth;
+    edges position[REACHES], normal[REACHES], depth[REACHES];
     double *z[2];
     vec3 *n;
 } look;
@@ -63,12 +63,14 @@ static void look_at_row(const build *b, int y, look *l)
     for (int x = 0; x < w; x++) {
         bool there = b->raw[build_index(b, x, y)] > 0.0f;
         l->z[0][x] = there && b->has_position ? camera_from_world(&b->g->camera, build_position(b, x, y)).z : 0.0;
-        l->z[1][x] = there && b->has_depth ? build_depth(b, x, y) : 0.0;
+        l->z[1][x] = there && b->has_depth && b->depth_measured ? build_depth(b, x, y) : 0.0;
         l->n[x] = there && b->has_normal ? stored_normal(b, x, y) : v3(0, 0, 0);
     }
-    count_depth(l->z[0], w, &l->position);
-    count_depth(l->z[1], w, &l->depth);
-    count_normals(l->n, w, &l->normal);
+    for (int r = 0; r < REACHES; r++) {
+        count_depth(l->z[0], w, r + 1, &l->position[r]);
+        count_depth(l->z[1], w, r + 1, &l->depth[r]);
+        count_normals(l->n, w, r + 1, &l->normal[r]);
+    }
 }
 
 // "arnold/aovs/P/filter" when it is no closest filter, else "".
@@ -82,11 +84,13 @@ static const char *header_filter(const build *b, role r)
     return exr_attr_string(b->file, ref.part, name, &value) && !strstr(value, "closest") ? value : "";
 }
 
-static void warn_filtered(build *b, role r, const edges *e)
+static void warn_filtered(build *b, role r, const edges of_reach[REACHES])
 {
+    const edges *e = filtered(&of_reach[0]) ? &of_reach[0] : &of_reach[1];
     const char *header = header_filter(b, r);
     bool seen = filtered(e);
     if (!seen && !header[0]) return;
+    if (seen) b->filtered |= 1u << r;
     char key[32], evidence[128] = "";
     snprintf(key, sizeof key, "filtered-%s", role_name(r));
     if (seen)
@@ -187,9 +191,9 @@ bool damage_warn(build *b)
     int stride = b->g->height / LOOKED_AT_ROWS + 1;
     for (int y = 0; ok && y < b->g->height; y += stride) look_at_row(b, y, &l);
     if (ok) {
-        warn_filtered(b, ROLE_POSITION, &l.position);
-        warn_filtered(b, ROLE_DEPTH, &l.depth);
-        if (!b->row->normals_averaged) warn_filtered(b, ROLE_NORMAL, &l.normal);
+        warn_filtered(b, ROLE_POSITION, l.position);
+        warn_filtered(b, ROLE_DEPTH, l.depth);
+        if (!b->row->normals_averaged) warn_filtered(b, ROLE_NORMAL, l.normal);
         for (int r = ROLE_POSITION; r <= ROLE_DEPTH; r++) warn_loss(b, (role)r);
     }
     free(l.z[0]);

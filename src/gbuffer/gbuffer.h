@@ -91,6 +91,9 @@ typedef struct gbuffer {
 bool gbuffer_build(const exr_file *file, const resolution *r, const gbuffer_options *options, gbuffer *out, log_t *log, error *e);
 void gbuffer_free(gbuffer *g);
 
+// The first role of which it is doubtful what it means; NULL when there is none.
+const char *gbuffer_doubt(const gbuffer *g);
+
 // Camera-space position of pixel (x, y), from its depth; z = 0 where there is no surface.
 vec3 gbuffer_position(const gbuffer *g, int x, int y);
 

@@ -10,6 +10,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "gbuffer/rotation.h"
@@ -23,15 +24,15 @@ static const double least_second = 0.05; // singular value, of the first, below 
 static const double least_turn = 1.5;    // degrees: a nearer rotation is the named reading itself
 static const double least_spread = 0.02; // of the surfaces, for normals to be asked whether they follow it
 
-// The kinds of readings, likeliest first, and what one must gain in mean loss over a likelier one.
-typedef enum kind { KIND_OWN, KIND_PLAIN, KIND_TURNED, KIND_ESTIMATE, KINDS } kind;
+// What a reading of a kind must gain in mean loss over a likelier one.
 static const struct {
     double gain, share;
-} margins[KINDS] = {[KIND_PLAIN] = {2e-4, 0.0}, [KIND_TURNED] = {5e-4, 0.1}, [KIND_ESTIMATE] = {4e-4, 0.15}};
+} margins[KINDS] = {[KIND_PLAIN] = {2e-4, 0.0}, [KIND_TURNED] = {5e-4, 0.1}, [KIND_ESTIMATE] = {4e-4, 0.05}};
 
 typedef struct decoded {
     vec3 unit[EVIDENCE_SAMPLES]; // 0 where there is none
     mat3 correlation;            // mean of w surface unit^T
+    double odd;                  // median | |n| - 1 | of what was coded as 0..1
     bool there;
 } decoded;
 
@@ -77,7 +78,8 @@ static bool decode_all(const evidence *v, normal_encoding e, decoded *out)
         accumulate(&out->correlation, outer(v->surface[i], out->unit[i], v->weight[i]));
     }
     // Normals need not have unit length, but what was coded as 0..1 had it before.
-    out->there = n >= LEAST && (e == NORMAL_SIGNED || solve_median(off, n) < odd_length);
+    out->odd = e == NORMAL_SIGNED ? 0.0 : solve_median(off, n);
+    out->there = n >= LEAST && out->odd < odd_length;
     return out->there;
 }
 
@@ -95,15 +97,16 @@ static double loss_of(const search *s, const reading *r, size_t i)
     return fmin(1.0 - v3_dot(m3_apply(r->to_camera, n), s->v->surface[i]), most_loss);
 }
 
+// Of two curves that decode to about the same directions the one that makes unit vectors is the right one.
 static double mean_loss(const search *s, const reading *r)
 {
-    double sum = 0.0;
+    double sum = 0.1 * s->decoded[r->encoding].odd;
     for (size_t i = 0; i < s->v->count; i++) sum += s->v->weight[i] * loss_of(s, r, i);
     return sum;
 }
 
 // Whether b's gain over a is more than chance and more than the margin.
-static bool displaces(const search *s, const reading *b, const reading *a, kind k)
+static bool displaces(const search *s, const reading *b, const reading *a, reading_kind k)
 {
     double gain = a->loss - b->loss, variance = 0.0;
     if (!(gain > margins[k].gain + margins[k].share * a->loss)) return false;
@@ -115,8 +118,9 @@ static bool displaces(const search *s, const reading *b, const reading *a, kind 
 }
 
 // Takes the reading as the best of its kind if it has the smaller loss.
-static void offer(search *s, reading r, kind k)
+static void offer(search *s, reading r, reading_kind k)
 {
+    r.kind = k;
     r.loss = mean_loss(s, &r);
     char name[VERDICT_TEXT];
     reading_describe(s->b, &r, name, sizeof name);
@@ -174,23 +178,23 @@ static void offer_named(search *s, normal_encoding e)
     static const double eyes[3][3] = {{1, -1, -1}, {1, -1, 1}, {1, 1, 1}}; // y up, z back; y up, z forward; our own
     const build *b = s->b;
     const mat3 none = m3_identity(), inwards = signs(-1, -1, -1);
-    kind k = e == NORMAL_SIGNED || e == NORMAL_UNORM ? KIND_PLAIN : KIND_TURNED;
+    reading_kind k = e == NORMAL_SIGNED || e == NORMAL_UNORM ? KIND_PLAIN : KIND_TURNED;
     bool known_is_camera = b->g->position_is_camera_space;
     bool world = s->space != SPACE_CAMERA, eye = s->space != SPACE_WORLD;
     for (int side = 0; side < 2; side++) {
         reading r = {.encoding = e, .turned = side ? inwards : none};
         if (b->has_rotation && (known_is_camera ? eye : world)) {
             r.source = FROM_KNOWN, r.to_camera = m3_mul(r.turned, known_rotation(b));
-            offer(s, r, k);
+            offer(s, r, side ? KIND_TURNED : k);
         }
         if (b->has_header_pose && world) {
             r.source = FROM_HEADER, r.to_camera = m3_mul(r.turned, header_rotation(b));
-            offer(s, r, k);
+            offer(s, r, side ? KIND_TURNED : k);
         }
         for (int i = 0; i < 3 && eye; i++) {
             r.source = FROM_CAMERA, r.turned = m3_mul(side ? inwards : none, signs(eyes[i][0], eyes[i][1], eyes[i][2]));
             r.to_camera = r.turned;
-            offer(s, r, k);
+            offer(s, r, side ? KIND_TURNED : k);
         }
     }
     if (b->has_rotation && (known_is_camera ? eye : world)) offer_turned(s, e, FROM_KNOWN, known_rotation(b), true, false);
@@ -280,12 +284,20 @@ static double follows(const search *s, const reading *r, double *scatter)
     return (both / weight - v3_dot(n, d)) / sqrt(normals * surfaces);
 }
 
+static void put_fit(const search *s, const reading *r, double fit)
+{
+    char name[VERDICT_TEXT];
+    reading_describe(s->b, r, name, sizeof name);
+    for (int i = 0; i < s->list->count; i++)
+        if (strcmp(s->list->tried[i].name, name) == 0) s->list->tried[i].fit = fit;
+}
+
 static bool settle(const search *s, normal_choice *out)
 {
     int chosen = -1;
     for (int k = 0; k < KINDS; k++) {
         if (!s->has[k]) continue;
-        if (chosen >= 0 && !displaces(s, &s->best[k], &out->best, (kind)k)) continue;
+        if (chosen >= 0 && !displaces(s, &s->best[k], &out->best, (reading_kind)k)) continue;
         if (k == KIND_ESTIMATE && chosen >= 0 &&
             rotation_angle(m3_mul(s->best[k].to_camera, m3_transpose(out->best.to_camera))) < least_turn)
             continue;
@@ -294,6 +306,7 @@ static bool settle(const search *s, normal_choice *out)
     if (chosen < 0) return false;
     double scatter;
     out->best.fit = median_cosine(s, &out->best);
+    put_fit(s, &out->best, out->best.fit);
     out->best.follows = follows(s, &out->best, &scatter);
     out->one_way = scatter < 0.2;
     mat3 ideal;
@@ -307,6 +320,7 @@ static bool settle(const search *s, normal_choice *out)
             if (!s->has[k] || rotation_angle(apart) < least_turn) continue;
         }
         double fit = median_cosine(s, &s->best[k]);
+        put_fit(s, &s->best[k], fit);
         if (!(fit <= out->next)) out->next = fit;
     }
     return true;

@@ -15,10 +15,15 @@ typedef enum reading_source {
     READING_SOURCES
 } reading_source;
 
+// How likely a reading is beforehand: the renderer's own; world or camera space as they are commonly stored; the axes in any
+// order and sign, or a display curve; a rotation nothing else knows of.
+typedef enum reading_kind { KIND_OWN, KIND_PLAIN, KIND_TURNED, KIND_ESTIMATE, KINDS } reading_kind;
+
 typedef struct reading {
     mat3 to_camera;
     normal_encoding encoding;
     reading_source source;
+    reading_kind kind;
     mat3 turned;      // signed permutation of the axes that comes on top: the stored axes' for a world, the camera's otherwise
     bool inverse;     // FROM_HEADER: the matrix is the inverse of what the row says
     double fit, loss; // median cosine; mean of 1 - cosine, a sample at most 0.3

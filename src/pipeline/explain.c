@@ -101,6 +101,10 @@ static bool explain_files(const options *o, const input_paths *in, FILE *to, err
     log_init(&log, LOG_QUIET);
     job j = {.o = &only_what_is_needed, .log = &log, .threads = o->threads > 0 ? o->threads : threads_default()};
     bool ok = frame_read_files(&j, in->list, in->count, &r, e);
+    if (o->explain_json) {
+        explain_json(&r, ok, &log, e, to);
+        goto out;
+    }
     for (int i = 0; i < in->count; i++) fprintf(to, "%s\n", in->list[i]);
     for (const frame_result *v = &r; v && v->file && v->resolution.convention; v = v->next_view) {
         if (v->view) fprintf(to, "\nview %s\n", v->view);
@@ -113,6 +117,7 @@ static bool explain_files(const options *o, const input_paths *in, FILE *to, err
     }
     if (log.warning_count) heading(to, "warnings");
     for (int i = 0; i < log.warning_count; i++) fprintf(to, "  %s\n", log.warnings[i]);
+out:
     frame_free(&r);
     log_free(&log);
     return ok;

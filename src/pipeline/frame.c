@@ -116,6 +116,16 @@ static pass_space normal_space_of(const options *o)
     return strcmp(o->normal_space, "world") == 0 ? SPACE_WORLD : SPACE_CAMERA;
 }
 
+static bool check_doubt(const job *j, const frame_result *r, error *e)
+{
+    const char *doubtful = gbuffer_doubt(&r->gb);
+    if (!j->o->strict || j->o->explain || !doubtful) return true;
+    return err_set(e, ERR_DOUBT, r->file->path, NULL,
+                   "it is doubtful what the %s pass means, as the warning says, and --strict forbids to go on; --explain shows "
+                   "every reading that was tried",
+                   doubtful);
+}
+
 static bool build_view(const job *j, frame_result *r, error *e)
 {
     gbuffer_options g = {.need = r->plan.need,
@@ -128,7 +138,7 @@ static bool build_view(const job *j, frame_result *r, error *e)
                          .depth_near = j->o->depth_range[0],
                          .depth_far = j->o->depth_range[1]};
     if (r->view) log_info(j->log, "view %s:", r->view);
-    return gbuffer_build(r->file, &r->resolution, &g, &r->gb, j->log, e) && convert_albedo(j, r, e) &&
+    return gbuffer_build(r->file, &r->resolution, &g, &r->gb, j->log, e) && check_doubt(j, r, e) && convert_albedo(j, r, e) &&
            (!r->plan.from_sh || stored_sh_load(j->o, r->file, r->view, &r->gb, r->stored_sh, e));
 }
 
