@@ -1,6 +1,9 @@
 // A batch takes no more memory the longer it gets: what a long one leaves behind, all its frames freed, is what a short one left.
 //
-// The peak itself says less: how far the frames in flight overlap is chance. `make bench-frame` shows it at full size.
+// A batch before both warms the process: a driver that compiles shaders keeps memory of its own (LLVM, with nothing in its cache:
+// some 10 MiB), and one that finds them compiled does not. The margin is MARGIN of a frame, 8 MiB: a leak of one byte a pixel and
+// frame is 10 MiB here. The peak itself says less: how far the frames in flight overlap is chance. `make bench-frame` shows it at
+// full size.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -18,7 +21,8 @@
 #include "pipeline/batch.h"
 #include "scene_picture.h"
 
-enum { SHORT = 5, LONG = 24, WIDTH = 640, HEIGHT = 360 };
+enum { SHORT = 5, LONG = 16, WIDTH = 1280, HEIGHT = 720 };
+#define MARGIN 0.03
 
 static char folder[] = "/tmp/ssdo-batch-XXXXXX";
 
@@ -71,10 +75,11 @@ static double after(int frames)
 static void test_flat(void **state)
 {
     (void)state;
+    after(SHORT);
     double few = after(SHORT), many = after(LONG), frame = WIDTH * HEIGHT * 300.0 / 1048576.0;
     printf("figure: resident after %d frames %.1f MiB, after %d frames %.1f MiB; one frame takes about %.0f MiB\n", SHORT, few,
            LONG, many, frame);
-    assert_true(many < 0.5 * frame && many <= few + 0.05 * frame);
+    assert_true(many < 0.5 * frame && many <= few + MARGIN * frame);
 }
 
 // One picture under many names.
