@@ -1,5 +1,5 @@
 # ssdo-filter. `make demo` and `make check` are all a newcomer needs; `make help` lists the rest.
-VERSION  := 0.1.0
+VERSION  := $(shell sh tests/version.sh)
 PREFIX   ?= /usr/local
 DESTDIR  ?=
 BINDIR   := $(PREFIX)/bin
@@ -15,25 +15,31 @@ ifeq ($(origin CC),default)
 CC       := gcc
 endif
 
-# Debian packages: what the build needs, what `make check` needs on top.
+# Debian packages (tests/deps.sh): what the build needs, what `make check` needs on top.
 DEPS_BUILD := gcc g++ pkg-config libopenexr-dev libopenimageio-dev libopencolorio-dev libembree-dev libegl-dev libegl-mesa0 libgl1-mesa-dri \
               libepoxy-dev libdeflate-dev libjson-c-dev libxxhash-dev
 DEPS_CHECK := libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender man-db parallel
 DEPS_BENCH := gnuplot-nox
-DEPS_HOSTS := blender openimageio-tools openexr imagemagick libmagickcore-6.q16-6-extra
+DEPS_HOSTS := blender openimageio-tools openexr imagemagick libmagickcore-6.q16-6-extra/libmagickcore-7.q16-10-extra
 DEPS_FARM  := blender slurm-wlm munge parallel python3-yaml openimageio-tools
 
 PKGS       := OpenEXR epoxy egl libdeflate json-c
 # Looked up only when something is compiled, so that `make deps` works on a machine that has none of it.
 PKG_CFLAGS  = $(shell pkg-config --cflags $(PKGS) | sed 's/-I/-isystem /g')
-PKG_LIBS    = -lOpenEXRCore $(shell pkg-config --libs epoxy egl libdeflate json-c) -lpthread -ldl -lm
+# Headers and libraries come from the same place: pkg-config names both, and a library outside the system's folders is found there at
+# run time too. OpenEXR's C++ libraries, which are not used, are not linked.
+RPATHS      = $(patsubst -L%,-Wl$(comma)-rpath$(comma)%,$(shell pkg-config --libs-only-L $(1)))
+comma      := ,
+PKG_LIBS    = -Wl,--as-needed $(shell pkg-config --libs $(PKGS)) $(call RPATHS,$(PKGS)) -lpthread -ldl -lm
+# Embree has no pkg-config file; the header that src/plugin/embree.h finds tells the version.
+EMBREE      = -lembree$(shell echo RTC_VERSION_MAJOR | $(CXX) $(CXXFLAGS) -include src/plugin/embree.h -E -P -x c++ - | tail -1)
 
 SANITIZE ?=
 SANFLAGS := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-omit-frame-pointer)
 WARN     := -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes
 CFLAGS   ?= -O2 -g
 # No contraction of a*b+c and no fast-math: results must be the same bytes on every machine of the same architecture.
-ALL_CFLAGS = -std=c17 -D_GNU_SOURCE -DSSDO_VERSION='"$(VERSION)"' -DSSDO_LIBDIR='"$(LIBDIR)"' -Isrc -Itests/lib -I$(BUILD) $(PKG_CFLAGS) $(WARN) \
+ALL_CFLAGS = -std=c17 -D_GNU_SOURCE -DSSDO_LIBDIR='"$(LIBDIR)"' -Isrc -Itests/lib -I$(BUILD) $(PKG_CFLAGS) $(WARN) \
              $(CFLAGS) -ffp-contract=off $(SANFLAGS) $(EXTRA_CFLAGS)
 CXXFLAGS ?= -O2 -g
 ALL_CXXFLAGS = -std=c++17 -fPIC -fvisibility=hidden -Isrc $(CXXFLAGS) -Wall -Wextra $(SANFLAGS)
@@ -79,6 +85,14 @@ $(BUILD)/%.o: %.c | deps-stamp
 	@echo "  cc   $<"
 	$(Q)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
 
+# What names the version is compiled again when it changes, and nothing else is.
+VERSIONED := $(patsubst %.c,$(BUILD)/%.o,$(shell grep -l SSDO_VERSION src/*.c src/*/*.c))
+$(VERSIONED): ALL_CFLAGS += -DSSDO_VERSION='"$(VERSION)"'
+$(VERSIONED): $(BUILD)/version
+$(BUILD)/version: always
+	@mkdir -p $(@D) && { [ "$$(cat $@ 2>/dev/null)" = '$(VERSION)' ] || echo '$(VERSION)' >$@; }
+.PHONY: always
+
 # Shaders travel inside the binary; SSDO_SHADER_DIR reads them from a folder instead.
 $(BUILD)/shaders.c: $(GLSL) shaders/embed.sh
 	@mkdir -p $(@D)
@@ -87,9 +101,10 @@ $(BUILD)/shaders.o: $(BUILD)/shaders.c src/gpu/shaders.h
 	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $<
 
 # OpenImageIO, OpenColorIO and Embree live in modules of their own, opened on demand: linking OpenImageIO costs every run 290 ms.
-$(BUILD)/ssdo-images.so: LIBRARY = $$(pkg-config --cflags --libs OpenImageIO)
-$(BUILD)/ssdo-colour.so: LIBRARY = $$(pkg-config --cflags --libs OpenColorIO)
-$(BUILD)/ssdo-trace.so: LIBRARY = -lembree3 # has no pkg-config file
+$(BUILD)/ssdo-images.so: LIBRARY = $$(pkg-config --cflags --libs OpenImageIO) $(call RPATHS,OpenImageIO)
+$(BUILD)/ssdo-colour.so: LIBRARY = $$(pkg-config --cflags --libs OpenColorIO) $(call RPATHS,OpenColorIO)
+$(BUILD)/ssdo-trace.so: LIBRARY = $(EMBREE)
+$(BUILD)/ssdo-trace.so: src/plugin/embree.h
 $(BUILD)/ssdo-%.so: src/plugin/%_shim.cpp src/plugin/%_abi.h | deps-stamp
 	@mkdir -p $(@D)
 	@echo "  c++  $@"
@@ -142,7 +157,7 @@ check-threads: deps-check
 FUZZ_SECONDS ?= 60
 .PHONY: fuzz
 fuzz: deps
-	@sh tests/deps.sh clang libclang-rt-14-dev openimageio-tools
+	@sh tests/deps.sh clang libclang-rt-dev/libclang-rt-14-dev openimageio-tools
 	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/tests/make_corpus
 	@sh tests/fuzz/run.sh $(BUILD) $(FUZZ_SECONDS)
 $(BUILD)/tests/make_corpus: $(BUILD)/tests/fuzz/make_corpus.o $(TESTLIB) $(BUILD)/libssdo.a
@@ -176,17 +191,17 @@ UNSEEN_SPP ?= 48
 # Renders and references, kept outside the tree: they survive `make clean`, and every clone shares them.
 BENCH_CACHE ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/ssdo-bench
 $(BUILD)/bench-program: $(BENCH_OBJ) $(TESTLIB) $(BUILD)/libssdo.a
-	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lembree3 $(PKG_LIBS)
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(EMBREE) $(PKG_LIBS)
 
 # What ssdo's light and bounce cost over its occlusion, beside the paper's figures; s3ho over hemisphere.
 $(BUILD)/bench-paper: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/paper.o $(TESTLIB) $(BUILD)/libssdo.a
-	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lembree3 $(PKG_LIBS)
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(EMBREE) $(PKG_LIBS)
 # The errors of arc's budgets, for bench-frame.
 $(BUILD)/bench-curve: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/curve.o $(TESTLIB) $(BUILD)/libssdo.a
-	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lembree3 $(PKG_LIBS)
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(EMBREE) $(PKG_LIBS)
 # Sequences and step spacings that `arc` could draw from.
 $(BUILD)/bench-sequences: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/sequences.o $(TESTLIB) $(BUILD)/libssdo.a
-	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lembree3 $(PKG_LIBS)
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(EMBREE) $(PKG_LIBS)
 # The rendered samples of the folder SAMPLES, with SEEDS seeds.
 SAMPLES  ?= samples
 SEEDS    ?= 3
@@ -197,7 +212,7 @@ bench-sampling: deps-bench
 
 # --error: its estimate, and its time beside fixed budgets.
 $(BUILD)/bench-error: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/error.o $(TESTLIB) $(BUILD)/libssdo.a
-	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lembree3 $(PKG_LIBS)
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(EMBREE) $(PKG_LIBS)
 .PHONY: bench-error
 bench-error: deps-bench
 	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench-error

@@ -11,6 +11,7 @@
 #include "cli/names.h"
 #include "cli/options.h"
 #include "cli/signals.h"
+#include "exr/library.h"
 #include "pipeline/batch.h"
 #include "pipeline/complete.h"
 #include "pipeline/explain.h"
@@ -106,7 +107,7 @@ static bool tell(const options *o, bool *ok, error *e)
     else if (o->list_devices)
         list_devices();
     else if (o->explain)
-        *ok = explain_write(o, stdout, e);
+        *ok = exr_library_check(e) && explain_write(o, stdout, e);
     else
         return false;
     return true;
@@ -133,7 +134,7 @@ int main(int argc, char **argv)
     if (told) return finish_output(&e) && ok ? 0 : fail(&o, &e);
     log_t log;
     log_init(&log, o.quiet ? LOG_QUIET : o.verbose ? LOG_INFO : LOG_WARN);
-    ok = run(&o, stop_signal, &log, &e);
+    ok = exr_library_check(&e) && run(&o, stop_signal, &log, &e);
     log_free(&log);
     if (*stop_signal) return 128 + *stop_signal;
     return ok ? 0 : fail(&o, &e);

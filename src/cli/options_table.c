@@ -6,11 +6,9 @@
 #include "cli/options.h"
 
 #define FIELD(name) offsetof(options, name)
-#define WORDS(...)                                                                                                               \
-    (const option_word[])                                                                                                        \
-    {                                                                                                                            \
-        __VA_ARGS__, { NULL, 0 }                                                                                                 \
-    }
+// clang-format off
+#define WORDS(...) (const option_word[]){__VA_ARGS__, {NULL, 0}}
+// clang-format on
 
 // gbuffer/resolve.h's roles, which this room may not include; tests/unit/test_cli_parse.c holds both against each other.
 enum { POSITION, NORMAL, DEPTH, ALBEDO, BEAUTY, ALPHA, ROUGHNESS, METALLIC, EMISSION };

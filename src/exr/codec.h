@@ -9,8 +9,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include <OpenEXR/openexr.h>
 #include <libdeflate.h>
+#include <openexr.h>
 
 // One thread's codec. Zero it before the first use; codec_free when done. Pipelines point at it with their user data.
 typedef struct codec {

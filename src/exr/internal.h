@@ -4,7 +4,7 @@
 
 #include <pthread.h>
 
-#include <OpenEXR/openexr.h>
+#include <openexr.h>
 
 #include "exr/file.h"
 #include "exr/write.h"

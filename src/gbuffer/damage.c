@@ -1,5 +1,5 @@
 // Warnings about geometry that was stored so that it no longer is the surface's: filtered, or compressed as a colour.
-#include <OpenEXR/openexr_attr.h>
+#include <openexr_attr.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

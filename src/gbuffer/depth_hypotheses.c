@@ -39,7 +39,7 @@ static values look(const build *b)
         double v = plane_get(&b->depth, (int)(i % (size_t)b->g->width), (int)(i / (size_t)b->g->width));
         if (background(b, v)) continue;
         s.looked_at++, s.negative += v < 0.0, s.zero += v == 0.0, s.one += v == 1.0;
-        s.within += v > 0.0 && v<1.0, s.beyond += v> 1.0;
+        s.within += v > 0.0 && 1.0 > v, s.beyond += v > 1.0;
     }
     return s;
 }

@@ -75,7 +75,7 @@ void evidence_gather(const build *b, evidence_point point, const void *context, 
     size_t stride = b->point_count / most + 1;
     v->count = 0;
     // In a picture of a few pixels or of leaves alone nothing may be smooth at the wanted step.
-    for (; step >= 1 && v->count<LEAST; step = step> 1 ? 1 : 0) {
+    for (; step >= 1 && LEAST > v->count; step = step > 1 ? 1 : 0) {
         v->count = 0;
         for (size_t i = 0; i < b->point_count && v->count < most; i += stride) {
             int x = (int)b->points[i].x, y = (int)b->points[i].y;

@@ -1,6 +1,6 @@
 #include "pipeline/output.h"
 
-#include <OpenEXR/openexr.h>
+#include <openexr.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

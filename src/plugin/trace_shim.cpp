@@ -1,11 +1,10 @@
-// The C++ side of plugin/trace.h: Embree 3.
+// The C++ side of plugin/trace.h: Embree.
 #include <cstdio>
 #include <cstring>
 #include <new>
 #include <string>
 
-#include <embree3/rtcore.h>
-
+#include "plugin/embree.h"
 #include "plugin/trace_abi.h"
 
 #define EXPORT extern "C" __attribute__((visibility("default")))
@@ -47,21 +46,19 @@ RTCRay ray_of(const trace_ray &r)
     return ray;
 }
 
-trace_hit nearest(RTCScene s, RTCIntersectContext *context, const trace_ray &r)
+trace_hit nearest(RTCScene s, const trace_ray &r)
 {
     RTCRayHit q = {};
     q.ray = ray_of(r);
     q.hit.geomID = q.hit.primID = q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(s, context, &q);
+    embree_nearest(s, &q);
     if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {TRACE_FAR, TRACE_MISS};
     return {q.ray.tfar, q.hit.primID};
 }
 
-trace_hit blocked(RTCScene s, RTCIntersectContext *context, const trace_ray &r)
+trace_hit blocked(RTCScene s, const trace_ray &r)
 {
-    RTCRay ray = ray_of(r);
-    rtcOccluded1(s, context, &ray);
-    return ray.tfar < 0.0f ? trace_hit{0.0f, 0} : trace_hit{TRACE_FAR, TRACE_MISS};
+    return embree_blocked(s, ray_of(r)) ? trace_hit{0.0f, 0} : trace_hit{TRACE_FAR, TRACE_MISS};
 }
 } // namespace
 
@@ -85,13 +82,11 @@ EXPORT void *ssdo_trace_open(const float *vertices, size_t vertex_count, const u
 EXPORT void ssdo_trace_rays(const void *data, const trace_ray *rays, trace_hit *hits, size_t count)
 {
     const scene *s = static_cast<const scene *>(data);
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     for (size_t i = 0; i < count; i++) {
         if (rays[i].reach < 0.0f)
             hits[i] = {0.0f, TRACE_NO_RAY};
         else
-            hits[i] = rays[i].any != 0.0f ? blocked(s->traced, &context, rays[i]) : nearest(s->traced, &context, rays[i]);
+            hits[i] = rays[i].any != 0.0f ? blocked(s->traced, rays[i]) : nearest(s->traced, rays[i]);
     }
 }
 

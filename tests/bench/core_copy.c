@@ -5,7 +5,7 @@
 #include <string.h>
 #include <time.h>
 
-#include <OpenEXR/openexr.h>
+#include <openexr.h>
 
 #define MUST(call)                                                                                                               \
     do {                                                                                                                         \

@@ -1,8 +1,9 @@
-#include <embree3/rtcore.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
 #include "bench.h"
+#include "plugin/embree.h"
 
 struct embree {
     RTCDevice device;
@@ -105,10 +106,8 @@ static struct RTCRay ray_of(vec3 o, vec3 d, double tmin, double tmax)
 static bool closest(const void *data, vec3 o, vec3 d, double tmin, double tmax, hit *out)
 {
     const embree *m = data;
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     struct RTCRayHit r = {.ray = ray_of(o, d, tmin, tmax), .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
-    rtcIntersect1(m->scene, &context, &r);
+    embree_nearest(m->scene, &r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     vec3 n = v3_normalize(v3((double)r.hit.Ng_x, (double)r.hit.Ng_y, (double)r.hit.Ng_z));
     if (v3_dot(n, d) > 0.0) n = v3_scale(n, -1.0);
@@ -120,11 +119,7 @@ static bool closest(const void *data, vec3 o, vec3 d, double tmin, double tmax, 
 static bool blocked(const void *data, vec3 o, vec3 d, double tmin, double tmax)
 {
     const embree *m = data;
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    struct RTCRay r = ray_of(o, d, tmin, tmax);
-    rtcOccluded1(m->scene, &context, &r);
-    return r.tfar < 0.0f;
+    return embree_blocked(m->scene, ray_of(o, d, tmin, tmax));
 }
 
 embree *embree_open(const scene *s, error *e)

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <OpenEXR/openexr.h>
+#include <openexr.h>
 
 #include "base/half.h"
 #include "exr/write.h"

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <OpenEXR/openexr.h>
+#include <openexr.h>
 
 #include "exr/write.h"
 #include "scene_picture.h"

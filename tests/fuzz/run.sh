@@ -5,14 +5,14 @@
 set -eu
 build=$1/fuzz seconds=$2
 cc=${FUZZ_CC:-clang}
-command -v "$cc" >/dev/null 2>&1 || { echo "fuzz: no $cc here (Debian: clang libclang-rt-14-dev)"; exit 77; }
+command -v "$cc" >/dev/null 2>&1 || { echo "fuzz: no $cc here (Debian: clang libclang-rt-dev)"; exit 77; }
 mkdir -p "$build/corpus-exr" "$build/corpus-frames" "$build/crashes"
 flags="-std=c17 -D_GNU_SOURCE -DSSDO_VERSION=\"fuzz\" -Isrc -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined"
 packages="OpenEXR libdeflate json-c"
 system=$(pkg-config --cflags $packages | sed 's/-I/-isystem /g')
 echo "fuzz: building"
-$cc $flags $system tests/fuzz/fuzz_exr.c src/base/*.c src/exr/*.c src/plugin/*.c src/gbuffer/*.c -o "$build/fuzz_exr" -lOpenEXRCore \
-    $(pkg-config --libs libdeflate json-c) -lm -ldl -lpthread
+$cc $flags $system tests/fuzz/fuzz_exr.c src/base/*.c src/exr/*.c src/plugin/*.c src/gbuffer/*.c -o "$build/fuzz_exr" -Wl,--as-needed \
+    $(pkg-config --libs $packages) -lm -ldl -lpthread
 $cc $flags tests/fuzz/fuzz_frames.c src/base/*.c src/cli/frames.c -o "$build/fuzz_frames" -lm -lpthread
 "$1/tests/make_corpus" "$build/corpus-exr"
 oiiotool "$build/corpus-exr/kind3.exr" --tile 8 8 -o "$build/corpus-exr/tiled.exr" >/dev/null 2>&1 || true

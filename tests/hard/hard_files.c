@@ -11,7 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <OpenEXR/openexr.h>
+#include <openexr.h>
 
 #include "exr/file.h"
 #include "gbuffer/gbuffer.h"

@@ -1,7 +1,7 @@
 #include "renderer_file.h"
 
-#include <OpenEXR/openexr.h>
 #include <math.h>
+#include <openexr.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -13,8 +13,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include <OpenEXR/openexr.h>
 #include <cmocka.h>
+#include <openexr.h>
 
 #include "base/mem.h"
 #include "must.h"

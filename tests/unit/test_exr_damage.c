@@ -1,7 +1,7 @@
 // Damaged, truncated and hostile files: an error with a sentence, no crash, nothing printed, no half-read pixels.
 #include <fcntl.h>
 
-#include <OpenEXR/openexr.h>
+#include <openexr.h>
 
 #include "exr_raw.h"
 

@@ -1,7 +1,7 @@
 // Files that change while they are read, and pictures that no compression can make shorter. `make check SANITIZE=address` sees
 // what is read or written beyond a buffer's end.
-#include <OpenEXR/openexr.h>
 #include <libgen.h>
+#include <openexr.h>
 #include <sys/stat.h>
 
 #include "exr/codec.h"

@@ -2,7 +2,7 @@
 // each try is a process of its own: this program with the argument "try".
 #include <sys/wait.h>
 
-#include <OpenEXR/openexr.h>
+#include <openexr.h>
 
 #include "exr_support.h"
 

@@ -2,7 +2,7 @@
 // The C++ library is the reference: exrmaketiled -z none stores what it decodes, which leaves our reader little to do.
 #include <libgen.h>
 
-#include <OpenEXR/openexr.h>
+#include <openexr.h>
 
 #include "exr_support.h"
 

@@ -1,5 +1,5 @@
 // What is written comes back bit for bit, for every lossless compression, and is the same file for any number of threads.
-#include <OpenEXR/openexr.h>
+#include <openexr.h>
 
 #include "exr/codec.h"
 #include "exr_support.h"

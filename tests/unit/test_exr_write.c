@@ -5,7 +5,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include <OpenEXR/openexr.h>
+#include <openexr.h>
 
 #include "exr_raw.h"
 

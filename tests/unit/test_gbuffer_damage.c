@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <OpenEXR/openexr_attr.h>
 #include <cmocka.h>
+#include <openexr_attr.h>
 
 #include "must.h"
 #include "scene_picture.h"

@@ -13,18 +13,11 @@
 
 #include "gpu/choose.h"
 
-#define GPU(number)                                                                                                              \
-    {                                                                                                                            \
-        .nvidia = true, .cuda = (number)                                                                                         \
-    }
-#define OTHER                                                                                                                    \
-    {                                                                                                                            \
-        .cuda = -1                                                                                                               \
-    }
-#define SOFTWARE                                                                                                                 \
-    {                                                                                                                            \
-        .software = true, .cuda = -1                                                                                             \
-    }
+// clang-format off
+#define GPU(number) {.nvidia = true, .cuda = (number)}
+#define OTHER {.cuda = -1}
+#define SOFTWARE {.software = true, .cuda = -1}
+// clang-format on
 
 // The order as text, "210".
 static void expect(const gpu_candidate *list, int count, const char *visible, const char *wanted)

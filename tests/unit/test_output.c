@@ -11,8 +11,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include <OpenEXR/openexr.h>
 #include <cmocka.h>
+#include <openexr.h>
 
 #include "exr/write.h"
 #include "must.h"
