@@ -12,7 +12,7 @@
 #include "pipeline/stopwatch.h"
 
 enum {
-    PIECE = 1 << 16, // floats that one thread converts at a time: they stay in its cache
+    PIECE = 1 << 15, // floats that one thread converts at a time: they stay in its cache
     GROUP = 4,       // pieces for each thread that are fetched together, where nothing is mapped
 };
 
@@ -25,6 +25,32 @@ struct layer_band {
     gpu_transfer down[2];
 };
 typedef struct layer_band band;
+
+// Memory that all layers of a frame use in turn.
+typedef struct room {
+    float *v;
+    size_t size;
+} room;
+
+// The rows as they come, where nothing is mapped, and each thread's piece.
+typedef struct workspace {
+    room rows, scratch;
+} workspace;
+
+static bool provide(room *m, size_t size, error *e)
+{
+    if (m->size >= size) return true;
+    free(m->v);
+    m->v = mem_pixels(size, sizeof *m->v, e);
+    m->size = m->v ? size : 0;
+    return m->v != NULL;
+}
+
+static void free_workspace(workspace *w)
+{
+    free(w->rows.v);
+    free(w->scratch.v);
+}
 
 static size_t channels_of(layer_id l) { return strlen(layer_table[l].channels); }
 static int images_of(layer_id l) { return channels_of(l) > 4 ? 2 : 1; }
@@ -123,15 +149,15 @@ static int piece_rows(const frame_result *r, size_t stored)
     return rows > 1 ? (int)rows : 1;
 }
 
-static bool convert_band(const job *j, frame_result *r, const band *b, error *e)
+static bool convert_band(const job *j, frame_result *r, const band *b, workspace *w, error *e)
 {
     stopwatch t = stopwatch_start();
     conversion c = {.r = r, .b = b, .rows = piece_rows(r, b->stored)};
     size_t pieces = (size_t)(b->rows + c.rows - 1) / (size_t)c.rows;
     size_t threads = pieces < (size_t)j->threads ? pieces : (size_t)j->threads;
-    if (!make_room(j, b->layer, r, e) || !(c.scratch = mem_pixels(threads * scratch_size(&c), sizeof(float), e))) return false;
+    if (!make_room(j, b->layer, r, e) || !provide(&w->scratch, threads * scratch_size(&c), e)) return false;
+    c.scratch = w->scratch.v;
     threads_for((int)threads, pieces, convert_piece, &c);
-    free(c.scratch);
     r->clamped += c.clamped;
     stopwatch_add(&t, &r->wall_ms[STAGE_CONVERT], &r->cpu_ms[STAGE_CONVERT]);
     return true;
@@ -142,23 +168,22 @@ static bool convert_band(const job *j, frame_result *r, const band *b, error *e)
 static size_t components(const gpu_image *image) { return image->format == GL_R32F ? 1 : 4; }
 
 // Rows at a time through memory of ours, converted while they are in the cache.
-static bool fetch_directly(const job *j, gpu *g, const gpu_image *image, layer_id l, frame_result *r, error *e)
+static bool fetch_directly(job *j, const gpu_image *image, layer_id l, frame_result *r, workspace *w, error *e)
 {
     band b = {.layer = l, .stored = components(image)};
     int images = images_of(l), most = piece_rows(r, b.stored) * GROUP * j->threads;
     if (most > r->gb.height) most = r->gb.height;
     size_t size = b.stored * (size_t)r->gb.width * (size_t)most;
-    float *v = mem_pixels((size_t)images * size, sizeof *v, e);
-    bool ok = v != NULL;
+    bool ok = provide(&w->rows, (size_t)images * size, e);
     for (; ok && b.y < r->gb.height; b.y += b.rows) {
         b.rows = r->gb.height - b.y < most ? r->gb.height - b.y : most;
         for (int i = 0; i < images; i++) {
-            gpu_image_download_rows(g, image + i, b.y, b.rows, v + (size_t)i * size);
-            b.v[i] = v + (size_t)i * size;
+            float *v = w->rows.v + (size_t)i * size;
+            gpu_image_download_rows(&j->g, image + i, b.y, b.rows, v);
+            b.v[i] = v;
         }
-        ok = convert_band(j, r, &b, e);
+        ok = convert_band(j, r, &b, w, e);
     }
-    free(v);
     return ok;
 }
 
@@ -214,12 +239,15 @@ bool read_back_begin(job *j, const pass_context *c, frame_result *r, error *e)
         [LAYER_SH_3] = &c->sh[3],
         [LAYER_ERROR] = &c->error,
     };
-    for (int i = 0; i < LAYER_COUNT; i++) {
+    workspace w = {0};
+    bool ok = true;
+    for (int i = 0; ok && i < LAYER_COUNT; i++) {
         layer_id l = (layer_id)i;
         if (!(r->plan.layers & 1u << l) || (j->g.mapped && start_layer(&j->g, images[l], l, r))) continue;
-        if (!fetch_directly(j, &j->g, images[l], l, r, e)) return false;
+        ok = fetch_directly(j, images[l], l, r, &w, e);
     }
-    return gpu_check(&j->g, "the read-back", e);
+    free_workspace(&w);
+    return ok && gpu_check(&j->g, "the read-back", e);
 }
 
 bool read_back_wait(job *j, const frame_result *r, error *e)
@@ -231,15 +259,17 @@ bool read_back_wait(job *j, const frame_result *r, error *e)
 
 static bool convert_all(const job *j, gpu *waiting, frame_result *r, error *e)
 {
+    workspace w = {0};
     bool ok = true;
     for (int i = 0; ok && i < r->band_count; i++) {
         band *b = &r->bands[i];
         stopwatch t = stopwatch_start();
         for (int k = 0; ok && waiting && k < 2; k++) ok = gpu_transfer_wait(waiting, &b->down[k], e);
         if (waiting) stopwatch_add(&t, &r->wall_ms[STAGE_READ_BACK], &r->cpu_ms[STAGE_READ_BACK]);
-        ok = ok && convert_band(j, r, b, e);
+        ok = ok && convert_band(j, r, b, &w, e);
         for (int k = 0; k < 2; k++) gpu_transfer_end(&b->down[k]);
     }
+    free_workspace(&w);
     read_back_drop(r);
     return ok;
 }
