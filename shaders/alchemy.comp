@@ -1,8 +1,8 @@
 #version 450 core
-// Alchemy obscurance (chapter 4): S = (2 pi c / n) sum max(0, N.w - bias) H(R - |w|) / max(c^2, w.w), c = 0.1 R,
+// Alchemy obscurance (McGuire et al. 2011): S = (2 pi c / n) sum max(0, N.w - bias) H(R - |w|) / max(c^2, w.w), c = 0.1 R,
 // A = max(0, 1 - scale S)^contrast. Taps on a spiral over the projected disc, uniform in radius and angle, a golden section of a turn
 // apart (the chapter's 7 / 9 of a turn puts them on nine spokes, however many they are). This pass stores 1 - S;
-// look.comp makes A of it after the blur, for filters act on linear quantities (THEORY.md 1.9).
+// look.comp makes A of it after the blur, for filters act on linear quantities (README, correction 9).
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
 
@@ -30,11 +30,11 @@ void main() {
         return;
     }
     vec3 P = position_of(p, depth), N = normal_at(p);
-    // A length, so relative to the radius and to what rounding and the pixel grid can fake (THEORY.md 1.17).
+    // A length, so relative to the radius and to what rounding and the pixel grid can fake (README, correction 17).
     float bias = 1e-3 * min(params.radius, footprint(depth)) + 4.0 * rounding(P);
-    vec2 disc = params.radius * frame_lens.xy / (is_orthographic() ? 1.0 : depth); // R in pixels, THEORY.md 1.1
+    vec2 disc = params.radius * frame_lens.xy / (is_orthographic() ? 1.0 : depth); // R in pixels
     vec2 noise = pixel_hash(uvec2(p) + uint(params.seed) * 7919u);
-    float turn = 2.0 * PI * noise.x; // a whole turn, THEORY.md 1.2
+    float turn = 2.0 * PI * noise.x; // a whole turn, not half of one
     float sum = 0.0;
     for (int i = 0; i < params.samples; i++) {
         float alpha = (float(i) + noise.y) / float(params.samples);

@@ -1,11 +1,11 @@
 #version 450 core
-// The lit picture (DESIGN.md, Composite). One of:
+// The lit picture (README, Composite). One of:
 //   RELIGHT            kD albedo (radiance + indirect) + specular + emission          (radiance mode)
 //   RELIGHT VISIBILITY kD albedo (E_SH / pi visibility + indirect) + specular + emission   (visibility mode)
 //   SPLIT              beauty - (1 - a) albedo direct  (+ albedo indirect)             only direct diffuse light is occluded
 //   (none)             beauty a (+ albedo indirect)                                    a = lerp(1, occlusion, amount)
 // BACKGROUND: what is behind surfaces that are relit: 0 nothing, 1 the beauty, 2 the environment.
-// MULTIPLY_ALL: chapter 4's way, the occlusion is multiplied onto the specular light too (THEORY.md 1.10). DEPTHMASK: the whole is
+// MULTIPLY_ALL: the way of games, the occlusion is multiplied onto the specular light too (README, correction 10). DEPTHMASK: the whole is
 // scaled by 1 + strength x depthmask; Luft adds it to display values, but a sum would go negative and depend on the exposure.
 // Relit pixels that the surface covers by k < 1: k surface + (1 - k) background.
 // The composite of a beauty must come through to the bit where nothing is done to it, and drawing may flush denormals: it is

@@ -2,7 +2,7 @@
 // Depth darkening (Luft, Colditz, Deussen 2006): the unsharp mask of the depth buffer. With D the depth normalised to 0..1 and G a
 // Gaussian over the pixels that hold a surface (the weights of the rest are left out and divided away),
 //   mask = min(0, G*D - D)
-// is negative where a surface lies behind something near it on the screen, and 0 elsewhere (THEORY.md 1.15). Separable: ACROSS sums
+// is negative where a surface lies behind something near it on the screen, and 0 elsewhere (README, correction 15). Separable: ACROSS sums
 // along rows, DOWN along columns.
 #include "include/frame.glsl"
 

@@ -1,6 +1,6 @@
 #version 450 core
 // Layers of pixels that a surface covers only in part and whose centre missed it (no position): taken from the nearest pixel with a
-// surface, of those equally near the one with the most similar normal (DESIGN.md, Edges).
+// surface, of those equally near the one with the most similar normal (src/gbuffer/README.md, Coverage).
 #include "include/frame.glsl"
 
 PICTURE(r32f, coverage_image);

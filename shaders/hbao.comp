@@ -5,7 +5,7 @@
 //   h_0 = t + bias, W = 1 - (d / R)^2, samples beyond R ignored;  occlusion = 1 - AO
 // All beneath the horizon is blocked, and every direction of the hemisphere counts alike: solid angle, not cosine. The paper takes
 // elevations about the camera's axis and directions uniform on the screen; about V and projected to the screen, an empty plane is
-// open off the axis too (THEORY.md 1.12).
+// open off the axis too (README, correction 12).
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
 #include "include/recorded.glsl"

@@ -1,5 +1,5 @@
 #version 450 core
-// Radiance of a method that knows only how much is open: SH irradiance / pi times occlusion (chapter 4).
+// Radiance of a method that knows only how much is open: SH irradiance / pi times occlusion.
 #include "include/frame.glsl"
 #include "include/environment.glsl"
 

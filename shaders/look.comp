@@ -1,6 +1,6 @@
 #version 450 core
-// The looks of chapter 4 on a filtered scalar: A = max(0, 1 - scale S)^contrast, S the blocked share or the obscurance. They come
-// after the filter, which acts on linear quantities (THEORY.md 1.9). Scale and contrast 1 only bound the value.
+// Scale and contrast (McGuire et al. 2011) on a filtered scalar: A = max(0, 1 - scale S)^contrast, S the blocked share or the obscurance. They come
+// after the filter, which acts on linear quantities (README, correction 9). Scale and contrast 1 only bound the value.
 #include "include/frame.glsl"
 
 #include "params/look.glsl"

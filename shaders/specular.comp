@@ -1,5 +1,5 @@
 #version 450 core
-// GGX specular of the environment by filtered importance sampling (chapter 3; GPU Gems 3 ch. 20), not occluded.
+// GGX specular of the environment by filtered importance sampling (Colbert and Krivanek, GPU Gems 3, 2007), not occluded.
 //   half vectors with pdf D(h) (n.h); L weighted by F G (v.h) / ((n.v)(n.h)); level from Omega_s = 1 / (samples * pdf(l)).
 // alpha = roughness^2, F0 = lerp(0.04, base colour, metallic). Also writes kD = (1 - F)(1 - metallic), F at the normal's own angle.
 #include "include/frame.glsl"

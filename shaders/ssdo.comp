@@ -1,5 +1,5 @@
 #version 450 core
-// SSDO, direct light: one loop, several outputs (chapter 5).
+// SSDO, direct light: one loop, several outputs (Ritschel, Grosch, Seidel 2009).
 //   occlusion  = (2 / N) sum V cos                  the cosine-weighted open share of (1 / pi) sum V cos (2 pi / N)
 //   radiance   = sum (1 / pi) L_in V cos (2 pi / N)
 //   visibility = sum V lum(L_in) cos / sum lum(L_in) cos

@@ -1,8 +1,8 @@
 #version 450 core
 // SSDO, one bounce: every blocked sample is a patch of A_s = pi R^2 / N that sends the light it received.
-//   F_i = A_s cos_s cos_r / (pi d^2 + A_s)     bounded disc form factor (THEORY.md 1.5); the paper's A_s cos cos / (pi d^2) for large d
+//   F_i = A_s cos_s cos_r / (pi d^2 + A_s)     bounded disc form factor (README, correction 5); the paper's A_s cos cos / (pi d^2) for large d
 //   indirect = strength * min(1, B / sum F) * sum F_i fade(d_i) L_s rho_s,    B = (2 / N) sum blocked cos
-// cos_s = dot(n_s, -dir), cos_r = dot(N, dir), dir from receiver to sender (THEORY.md 1.4). B bounds the sum: what arrives from
+// cos_s = dot(n_s, -dir), cos_r = dot(N, dir), dir from receiver to sender (README, correction 4). B bounds the sum: what arrives from
 // senders cannot exceed the share of the hemisphere that they block.
 #include "include/frame.glsl"
 #include "include/sampling.glsl"

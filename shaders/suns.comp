@@ -1,6 +1,6 @@
 #version 450 core
 // Light of the environment's suns, small bright sources taken out of the map; suns_add.comp adds it to the light of the rest. Each
-// sun gets one side of a slice, marched as `arc` marches (THEORY.md 3.4), whose 64 sectors divide the sun's own disc; so a penumbra
+// sun gets one side of a slice, marched as `arc` marches (README, Suns), whose 64 sectors divide the sun's own disc; so a penumbra
 // has no noise. Planes do not stand in here: a plane's guess of a shadow is all or nothing, and errs more often than it helps.
 #define SUNS
 #include "include/frame.glsl"

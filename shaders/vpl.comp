@@ -1,7 +1,7 @@
 #version 450 core
 // One bounce from K virtual lights (instant radiosity, Keller 1997), chosen on the picture by passes/vpl.c. Light k is a disc of area
 // A_k that sends radiance L_k:
-//   F_k = A_k cos_s cos_r / (pi d^2 + A_k)                        bounded disc form factor (THEORY.md 1.5)
+//   F_k = A_k cos_s cos_r / (pi d^2 + A_k)                        bounded disc form factor (README, correction 5)
 //   indirect = strength * min(1, 1 / sum F) * sum F_k L_k
 // There is no radius: light crosses the whole scene. There is no visibility either: it crosses what stands between.
 #include "include/frame.glsl"

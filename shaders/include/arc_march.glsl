@@ -1,4 +1,4 @@
-// Walking outwards along one side of a slice: samples become runs, runs become blocked arcs (THEORY.md 3).
+// Walking outwards along one side of a slice: samples become runs, runs become blocked arcs (README, Runs).
 //
 // A run is a piece of connected surface: either tangent plane predicts the other sample. It blocks the arc from its lowest share to
 // its highest, its back included, which lies `thickness` behind its front on the view ray. The run that starts at the receiver

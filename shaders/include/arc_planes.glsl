@@ -1,4 +1,4 @@
-// Planes stand in for what the camera does not see (THEORY.md 3.6). A direction that hits a plane within R is blocked unless the
+// Planes stand in for what the camera does not see (README, Planes). A direction that hits a plane within R is blocked unless the
 // picture contradicts it:
 //   hit inside the frame:  it must lie behind the surface recorded there, and inside the plane's support
 //   hit outside the frame: where the slice's line leaves the frame, the plane must lie at the recorded surface or behind it

@@ -1,7 +1,7 @@
 // One side of a slice: a half plane through the view ray of the receiver, and what of its directions is blocked.
 //
 // Vectors of the half plane are written (x, y): x along the receiver's tangent, outwards, y along its normal projected into the
-// slice. Angles t are measured from V, positive outwards; n is the angle of the projected normal (THEORY.md 2). Directions are
+// slice. Angles t are measured from V, positive outwards; n is the angle of the projected normal (README, Slices and sectors). Directions are
 // named by their share c of the slice's cosine weight, from 0 (the tangent on the far side) to 1 (the tangent on this side):
 //     F(t) = (cos n sin^2 t + sin n (t - sin t cos t)) / 2 for t >= 0,   c = (F(t) - F(n - pi/2)) / (cos n + n sin n)
 

@@ -1,5 +1,5 @@
 // Weights of an edge-aware filter: a Gaussian of a tap's distance, the agreement of the normals, and the distance of the tap from the
-// centre's tangent plane in pixel footprints (THEORY.md 1.7). Pixels without a surface take no part.
+// centre's tangent plane in pixel footprints (README, correction 7). Pixels without a surface take no part.
 
 struct Centre {
     vec3 point, normal;

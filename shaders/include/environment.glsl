@@ -10,7 +10,7 @@ vec2 map_uv(vec3 direction) {
     return vec2(0.5 - around * (0.5 / PI), fast_atan(sine, direction.z) * (1.0 / PI));
 }
 
-// Level whose texels, at this direction, cover the given solid angle. A texel covers 2 pi^2 sin(theta) / (w h) (THEORY.md 2); near
+// Level whose texels, at this direction, cover the given solid angle. A texel covers 2 pi^2 sin(theta) / (w h); near
 // the poles sin(theta) is bounded by the half texel row that is really there.
 float map_level(vec3 direction, float solid_angle) {
     float sin_theta = max(sqrt(max(0.0, 1.0 - direction.z * direction.z)), 0.5 * PI / frame_env.z);

@@ -1,4 +1,4 @@
-// The sample set and the point test of screen-space directional occlusion (Ritschel, Grosch, Seidel 2009; chapter 5 of the seeds),
+// The sample set and the point test of screen-space directional occlusion (Ritschel, Grosch, Seidel 2009),
 // shared by the direct pass and the bounce so that both see the same blocked samples.
 #include "include/recorded.glsl"
 
@@ -12,7 +12,7 @@ struct Sample {
     vec3 surface;   // where its surface meets the ray of the sample
 };
 
-// Direction i of N, cosines stratified: uniform in solid angle (THEORY.md 1.3); distance lambda in (0, R], a permutation of
+// Direction i of N, cosines stratified: uniform in solid angle (README, correction 3); distance lambda in (0, R], a permutation of
 // the strata of its own so that it does not follow the elevation.
 Sample ssdo_sample(int i, vec3 P, mat3 tangents, vec2 noise) {
     float n = float(params.samples);

@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 
-// The values are the process's exit codes (DESIGN.md, man page).
+// The values are the process's exit codes (also in the man page).
 typedef enum error_code {
     ERR_NONE = 0,
     ERR_FRAMES = 1, // some frames of a sequence failed

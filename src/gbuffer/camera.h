@@ -39,7 +39,8 @@ typedef struct camera_point {
     double x, y;
 } camera_point;
 
-// Fits a camera to points (THEORY.md, ecosystem.md 0.2): normalised DLT in double, robust to a share of bad points (at least 30
+// Fits a camera to points (Hartley and Zisserman 2004, 7.1): normalised DLT in double, robust to a share of bad points (at least
+// 30
 // %), refined by Gauss-Newton on the reprojection error over f, centre and pose with zero skew. Decides between perspective and
 // orthographic by the residual, the simpler (orthographic) winning ties. Deterministic.
 // Returns false with ERR_INPUT naming --fov, --ortho and --camera when the points do not determine a camera (coplanar, too few).

@@ -5,7 +5,7 @@
 #include "gbuffer/camera.h"
 #include "gbuffer/conventions.h"
 
-// m: worldToNDC as stored (row vectors). Renderers differ (facts/ecosystem.md 1.2): 0..1 with y down, the standard's; -1..1 with
+// m: worldToNDC as stored (row vectors). Renderers differ: 0..1 with y down, the standard's; -1..1 with
 // y up; w = -z; transposed; mirrored. With points, the reading that puts them at their pixels is taken, and none is if the median
 // error stays above half a pixel. Without points only the first two readings are tried, and the one whose principal point lies
 // nearest the centre of the display window is taken, if that is within a quarter of its width. Its lens can be relied on then;

@@ -9,7 +9,7 @@ enum { FAR_AWAY = 1000000000 };
 
 const convention conventions[] = {
     {
-        // Cycles and Eevee, multilayer file and File Output node (facts/ecosystem.md 1.1, 1.3).
+        // Cycles and Eevee, multilayer file and File Output node.
         .name = "blender",
         .confirmed = true,
         .marks = {"BlenderMultiChannel"},

@@ -1,4 +1,4 @@
-// Coverage k (DESIGN.md, "Edges"; facts/ecosystem.md 1.3).
+// Coverage k (src/gbuffer/README.md, Coverage).
 #include <math.h>
 
 #include "base/mem.h"

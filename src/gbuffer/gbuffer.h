@@ -46,7 +46,7 @@ typedef struct gbuffer {
     float *material;       // 2 a pixel: roughness, metallic; NULL
     float *emission;       // 4 a pixel; NULL
     float *diffuse_direct; // 4 a pixel; NULL
-    float *coverage;       // k of DESIGN.md's "Edges", 0..1: 1 inside surfaces; NULL unless needed
+    float *coverage;       // k of src/gbuffer/README.md, Coverage, 0..1: 1 inside surfaces; NULL unless needed
     bool has_diffuse_indirect, has_alpha;
     bool normals_from_depth, depth_from_position;
     depth_kind depth_kind; // as measured
@@ -54,7 +54,7 @@ typedef struct gbuffer {
     mat3 normal_from_camera; // to the space of the file's normals; without any to the world, or if that is unknown to camera axes
                              // with y up and z backwards
     size_t valid;            // pixels with a surface
-    size_t off_ray;          // pixels whose P lay off their own ray and were moved onto it (DESIGN.md 4)
+    size_t off_ray;          // pixels whose P lay off their own ray and were moved onto it
     double extent;           // robust size of the visible surfaces, scene units: gbuffer_extent in radius.h
     verdict position_verdict, normal_verdict, depth_verdict;
     char evidence[12][160]; // what was measured, one line each, for -v and the report

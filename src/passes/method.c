@@ -48,7 +48,7 @@ const method methods[] = {
     {
         .name = "hemisphere",
         .summary = "normal-oriented hemisphere: points in the half space over the normal, with a range check",
-        .weighting = "the lecture's kernel: nearly solid angle, near points count more",
+        .weighting = "the common tutorial's kernel: nearly solid angle, near points count more",
         .reach = "points up to the radius, most of them within half of it",
         .blind = "direction: light is SH irradiance times occlusion; whatever the camera does not see",
         .samples = 64,

@@ -1,4 +1,4 @@
-// The large planes of a frame, which stand in for what the camera does not see of them (THEORY.md 3.6).
+// The large planes of a frame, which stand in for what the camera does not see of them (shaders/README.md, Planes).
 //
 // Found on the CPU from depth and normals: every hypothesis is one surface sample's own tangent plane (so one point suffices, and
 // no random triple is wasted), scored on a few thousand evenly spaced samples, refined by least squares. Deterministic: the same

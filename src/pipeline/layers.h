@@ -1,4 +1,4 @@
-// The layers we write, by name: DESIGN.md's contracts.
+// The layers we write, by name; what each holds stands in README.md, The layers.
 #ifndef SSDO_PIPELINE_LAYERS_H
 #define SSDO_PIPELINE_LAYERS_H
 

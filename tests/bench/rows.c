@@ -34,7 +34,7 @@ static const variant variants[] = {
     {"s3ho", ", --from-sh", .defaults = true, .set = {.relit = true}},
 };
 
-// Methods whose error with (nearly) endless samples issue 4 compares.
+// Methods whose error with (nearly) endless samples are compared.
 static bool is_slices(const method *m)
 {
     return strcmp(m->name, "arc") == 0 || strcmp(m->name, "gtao") == 0 || strcmp(m->name, "bitmask") == 0;

@@ -1,5 +1,5 @@
 #version 450 core
-// The yardstick of facts/peers.md: a 64-tap box. Its time on a machine is the unit in which times are compared.
+// The yardstick: a 64-tap box. Its time on a machine is the unit in which times are compared.
 layout(binding = 0) uniform sampler2D source;
 out float mean;
 

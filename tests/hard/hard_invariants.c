@@ -1,5 +1,5 @@
-// What must not change the picture (THEORY.md 5.1 and 5.4), for every method: an empty plane however it is seen, the scene's
-// scale, its place and turn, mirroring, camera roll, and the size of the tiles.
+// What must not change the picture (shaders/README.md, invariants 1 and 4), for every method: an empty plane however it is seen,
+// the scene's scale, its place and turn, mirroring, camera roll, and the size of the tiles.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

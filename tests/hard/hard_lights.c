@@ -94,8 +94,8 @@ static void environments(void **state)
            sizeof skies / sizeof *skies);
 }
 
-// THEORY.md 5.5 for every bounce: never more than the blocked share times the brightest sender, at any number of samples, from
-// 0.01 radii to touching.
+// Invariant 5 of shaders/README.md for every bounce: never more than the blocked share times the brightest sender, at any number
+// of samples, from 0.01 radii to touching.
 static void grazing_bounce(void **state)
 {
     static const double distances[] = {0.5, 0.01, 1e-4};

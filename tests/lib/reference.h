@@ -1,5 +1,5 @@
-// Reference A (THEORY.md 4): what each estimator would give with endless samples on the same layers, in double precision, written
-// from the definitions and independent of any shader. Slow; for a few thousand pixels (reference_pixels).
+// Reference A (tests/README.md): what each estimator would give with endless samples on the same layers, in double precision,
+// written from the definitions and independent of any shader. Slow; for a few thousand pixels (reference_pixels).
 //
 // The layers are read as the definition of the surfaces: the surface recorded at pixel q is its tangent plane (P_q, N_q), seen
 // through the pixel's own square, its depth limited to what that square can hold, judged from the neighbours. So nothing depends
@@ -95,7 +95,7 @@ typedef struct reference_alchemy_options {
 // contrast.
 double reference_alchemy(const layer *l, pixel p, const reference_alchemy_options *o);
 
-// --- The lecture's normal-oriented hemisphere ---
+// --- The normal-oriented hemisphere ---
 
 typedef struct reference_hemisphere_options {
     double radius;
@@ -130,7 +130,7 @@ typedef struct reference_slice_options {
     bool points;
 } reference_slice_options;
 
-// Cumulative cosine weight along a slice: integral of |sin t| cos(t - n) from 0 to t (THEORY.md 2).
+// Cumulative cosine weight along a slice: integral of |sin t| cos(t - n) from 0 to t (shaders/README.md, Slices and sectors).
 double reference_slice_measure(double t, double n);
 
 // Highest horizon on either side of each slice, every pixel on its screen line; all beyond the horizon is blocked.

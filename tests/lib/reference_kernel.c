@@ -1,4 +1,4 @@
-// The lecture's normal-oriented hemisphere and HBAO (reference.h).
+// The normal-oriented hemisphere and HBAO (reference.h).
 #include "reference.h"
 
 static double fraction(double a) { return a - floor(a); }
@@ -12,7 +12,7 @@ static void frame_about(vec3 n, vec3 *a, vec3 *b)
 // ---- hemisphere
 
 // A point uniform in the half cube [-1, 1]^2 x [0, 1] falls into a narrow cone with a probability in proportion to the cube of
-// the cone's length up to the faces; averaged over the turn about the normal, for the lecture turns its kernel at random.
+// the cone's length up to the faces; averaged over the turn about the normal, for the tutorial's kernel is turned at random.
 static double cone_weight(double cosine)
 {
     enum { TURNS = 90 };

@@ -1,4 +1,4 @@
-// The rendered samples and their path-traced truth (samples/scenes.json), and scoring against it (THEORY.md 4, reference B).
+// The rendered samples and their path-traced truth (samples/scenes.json), and scoring against it (tests/README.md, reference B).
 //
 // Truth has noise. With two independent renders A and B, mean((x - A)(x - B)) is the squared error of x without that noise.
 #ifndef SSDO_TESTS_SAMPLE_H

@@ -1,4 +1,4 @@
-// The truth of a scene, knowing all of its geometry: closed forms, and brute force by ray casting (THEORY.md 4, reference B).
+// The truth of a scene, knowing all of its geometry: closed forms, and brute force by ray casting (tests/README.md, reference B).
 //
 // Occlusion values are open shares, as in the `occlusion` layer. Angles are in radians. Brute force is deterministic for a seed;
 // two seeds give independent noise. The intersector is a tracer (scene.h), so that another one can stand in.

@@ -1,5 +1,5 @@
-// Closed forms of THEORY.md 5.2 by every method that claims cosine-weighted visibility, with as many samples as 64 slices of 64
-// steps: within 0.01. The others against what they assume, on the same scenes.
+// Closed forms of shaders/README.md, invariant 2, by every method that claims cosine-weighted visibility, with as many samples as
+// 64 slices of 64 steps: within 0.01. The others against what they assume, on the same scenes.
 //
 // A method is held to what it assumes. VISIBILITY: the true open share. HORIZON: the same where nothing overhangs, and its own
 // brute-force reference where something does. POINTS: the share of the points of the hemisphere ball that the camera sees. OWN:

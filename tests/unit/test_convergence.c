@@ -1,5 +1,5 @@
-// Each shader method against its own brute-force reference on the same layers (THEORY.md 4, reference A): the error must fall as
-// samples grow, on every generated scene. That it ends at zero, to less than an error of 5 % in cosine, weight, thickness or
+// Each shader method against its own brute-force reference on the same layers (tests/README.md, reference A): the error must fall
+// as samples grow, on every generated scene. That it ends at zero, to less than an error of 5 % in cosine, weight, thickness or
 // measure makes, is the matter of test_bias.
 #include <math.h>
 #include <setjmp.h>

@@ -1,4 +1,4 @@
-// The looks: depth darkening, what the occlusion is multiplied onto, the parameter sets of chapter 4.
+// The looks: depth darkening, what the occlusion is multiplied onto, the parameter sets of --preset.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

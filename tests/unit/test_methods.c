@@ -1,4 +1,4 @@
-// The methods on a real GL context against closed forms and the invariants of THEORY.md section 5.
+// The methods on a real GL context against closed forms and the invariants of shaders/README.md.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
