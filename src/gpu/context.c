@@ -173,7 +173,7 @@ void gpu_set_up(void) { cache_point_mesa(); }
 
 bool gpu_open(gpu *g, int device, log_t *log, error *e)
 {
-    *g = (gpu){0};
+    *g = (gpu){.log = log};
     gpu_set_up();
     if (!have_egl())
         return err_set(e, ERR_GL, NULL, NULL,

@@ -27,6 +27,7 @@ enum { GPU_UP_BUFFERS = 3, GPU_BAND_BYTES = 128 << 20 };
 
 typedef struct gpu {
     void *display, *context; // EGLDisplay, EGLContext
+    log_t *log;              // borrowed; may be NULL
     char renderer[160], version[96], platform[48];
     char device[160];                 // the renderer's name alone: results are the same bytes on the same device
     bool software;                    // a software rasteriser

@@ -5,6 +5,7 @@
 #include "base/infile.h"
 #include "base/mem.h"
 #include "gpu/cache.h"
+#include "gpu/diagnose.h"
 #include "gpu/gpu.h"
 #include "gpu/internal.h"
 #include "gpu/shaders.h"
@@ -56,7 +57,51 @@ static const char *source_of(splice *s, const char *name, error *e)
     return NULL;
 }
 
-// Splices the file's lines, following #include "..." once per file. A first line "#version" goes before the defines.
+static bool append_mark(splice *s, int line, int file, error *e)
+{
+    char mark[64];
+    snprintf(mark, sizeof mark, "#line %d %d\n", line, file);
+    return append(s, mark, strlen(mark), e);
+}
+
+static bool append_defines(splice *s, const char *defines, error *e)
+{
+    for (const char *d = defines; *d;) {
+        size_t m = strcspn(d, "\n");
+        if (m && (!append(s, "#define ", 8, e) || !append(s, d, m, e) || !append(s, "\n", 1, e))) return false;
+        d += m + (d[m] == '\n');
+    }
+    return true;
+}
+
+// Whether lines that the preprocessor left out may end here.
+static bool ends_part(const char *line)
+{
+    const char *p = line + strspn(line, " \t");
+    if (*p++ != '#') return false;
+    p += strspn(p, " \t");
+    return strncmp(p, "else", 4) == 0 || strncmp(p, "elif", 4) == 0 || strncmp(p, "endif", 5) == 0;
+}
+
+static bool splice_file(splice *s, const char *name, const char *defines, error *e);
+
+static bool splice_include(splice *s, const char *line, size_t n, error *e)
+{
+    const char *quote = memchr(line + 10, '"', n - 10);
+    if (!quote) return err_set(e, ERR_GL, s->files[s->file_count - 1], NULL, "an #include has no closing quotation mark");
+    char *included = mem_zero(n, 1, e);
+    if (!included) return false;
+    memcpy(included, line + 10, (size_t)(quote - line - 10));
+    int before = s->file_count;
+    // The name outlives this call inside `files`, unless the file was there already.
+    bool ok = append_mark(s, 1, s->file_count, e) && splice_file(s, included, NULL, e);
+    if (s->file_count == before) free(included);
+    return ok;
+}
+
+// Splices the file's lines, following #include "..." once per file. A first line "#version" goes before the defines. The
+// preprocessor skips a "#line" in a part that it leaves out, but counts what was spliced into it: so the place is told anew where
+// such a part may end.
 static bool splice_file(splice *s, const char *name, const char *defines, error *e)
 {
     for (int i = 0; i < s->file_count; i++)
@@ -66,31 +111,13 @@ static bool splice_file(splice *s, const char *name, const char *defines, error 
     if (!text) return false;
     int index = s->file_count++;
     s->files[index] = name;
-    char line_mark[64];
     int line = 1;
     for (const char *p = text; *p; line++) {
-        const char *end = strchr(p, '\n');
-        size_t n = end ? (size_t)(end - p) + 1 : strlen(p);
-        if (strncmp(p, "#include \"", 10) == 0) {
-            const char *quote = strchr(p + 10, '"');
-            char *included = mem_zero(n, 1, e);
-            if (!included || !quote) return false;
-            memcpy(included, p + 10, (size_t)(quote - p - 10));
-            snprintf(line_mark, sizeof line_mark, "#line 1 %d\n", s->file_count);
-            // The name outlives this call inside `files`; MAX_SOURCES bounds what is kept, freed with the process's programs.
-            bool ok = append(s, line_mark, strlen(line_mark), e) && splice_file(s, included, NULL, e);
-            snprintf(line_mark, sizeof line_mark, "#line %d %d\n", line + 1, index);
-            if (!ok || !append(s, line_mark, strlen(line_mark), e)) return false;
-        } else if (!append(s, p, n, e)) {
-            return false;
-        } else if (strncmp(p, "#version", 8) == 0 && defines) {
-            for (const char *d = defines; *d;) {
-                size_t m = strcspn(d, "\n");
-                if (m && (!append(s, "#define ", 8, e) || !append(s, d, m, e) || !append(s, "\n", 1, e))) return false;
-                d += m + (d[m] == '\n');
-            }
-            if (!append(s, "#line 2 0\n", 10, e)) return false;
-        }
+        size_t n = strcspn(p, "\n") + (strchr(p, '\n') != NULL);
+        bool include = strncmp(p, "#include \"", 10) == 0, version = defines && strncmp(p, "#version", 8) == 0;
+        bool ok = include ? splice_include(s, p, n, e) : append(s, p, n, e);
+        ok = ok && (p[n - 1] == '\n' || append(s, "\n", 1, e)) && (!version || append_defines(s, defines, e));
+        if (!ok || ((include || version || ends_part(p)) && !append_mark(s, line + 1, index, e))) return false;
         p += n;
     }
     return true;
@@ -101,7 +128,21 @@ static const char vertex_text[] =
     "#version 450 core\n"
     "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }\n";
 
-static bool attach(GLuint program, GLenum kind, const char *text, char *message, GLsizei size)
+typedef void (*get_iv)(GLuint, GLenum, GLint *);
+typedef void (*get_log)(GLuint, GLsizei, GLsizei *, GLchar *);
+
+// The whole log of a shader or program; NULL without memory.
+static char *read_log(GLuint id, get_iv iv, get_log log, error *e)
+{
+    GLint size = 0;
+    iv(id, GL_INFO_LOG_LENGTH, &size);
+    char *text = mem_zero((size_t)(size > 0 ? size : 0) + 1, 1, e);
+    if (text && size > 0) log(id, size, NULL, text);
+    return text;
+}
+
+// False with the driver's log in *log.
+static bool attach(GLuint program, GLenum kind, const char *text, char **log, error *e)
 {
     GLuint shader = glCreateShader(kind);
     GLint ok = 0;
@@ -111,31 +152,55 @@ static bool attach(GLuint program, GLenum kind, const char *text, char *message,
     if (ok)
         glAttachShader(program, shader);
     else
-        glGetShaderInfoLog(shader, size, NULL, message);
+        *log = read_log(shader, glGetShaderiv, glGetShaderInfoLog, e);
     glDeleteShader(shader); // the program keeps what it was given
     return ok;
 }
 
-static GLuint compile(const splice *s, const char *name, bool drawn, error *e)
+static bool link_program(GLuint program, char **log, error *e)
+{
+    GLint ok = 0;
+    glProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
+    glLinkProgram(program);
+    glGetProgramiv(program, GL_LINK_STATUS, &ok);
+    if (!ok) *log = read_log(program, glGetProgramiv, glGetProgramInfoLog, e);
+    return ok;
+}
+
+// The first error as "arc.comp:144: the driver refuses ...", the whole log to -v.
+static void refuse(const gpu *g, const splice *s, const char *name, const char *log, error *e)
+{
+    enum { SHOWN = 400 };
+    char file[256];
+    diagnose_place place;
+    char *all = diagnose_translate(log, s->files, s->file_count, e);
+    for (const char *p = all; p && *p; p += strcspn(p, "\n"), p += *p == '\n')
+        log_info(g->log, "shader %s: %.*s", name, (int)strcspn(p, "\n"), p);
+    free(all);
+    bool placed = diagnose_first(log, &place) && place.file < s->file_count;
+    const char *text = placed ? place.text : log;
+    size_t n = strcspn(text, "\n");
+    if (placed)
+        snprintf(file, sizeof file, "%s:%d", s->files[place.file], place.line);
+    else
+        snprintf(file, sizeof file, "%s", name), n = strlen(text);
+    err_set(e, ERR_GL, file, NULL, "the driver refuses shader %s: %.*s%s; -v shows all it says", name,
+            (int)(n < SHOWN ? n : SHOWN), text, n < SHOWN ? "" : "...");
+}
+
+static GLuint compile(const gpu *g, const splice *s, const char *name, bool drawn, error *e)
 {
     GLuint program = glCreateProgram();
-    char message[400] = "";
-    GLint ok = drawn ? attach(program, GL_VERTEX_SHADER, vertex_text, message, sizeof message) &&
-                           attach(program, GL_FRAGMENT_SHADER, s->text, message, sizeof message)
-                     : attach(program, GL_COMPUTE_SHADER, s->text, message, sizeof message);
-    if (ok) {
-        glProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
-        glLinkProgram(program);
-        glGetProgramiv(program, GL_LINK_STATUS, &ok);
-        if (!ok) glGetProgramInfoLog(program, sizeof message, NULL, message);
+    char *log = NULL;
+    bool ok = (!drawn || attach(program, GL_VERTEX_SHADER, vertex_text, &log, e)) &&
+              attach(program, drawn ? GL_FRAGMENT_SHADER : GL_COMPUTE_SHADER, s->text, &log, e) && link_program(program, &log, e);
+    if (!ok) {
+        refuse(g, s, name, log ? log : "", e);
+        glDeleteProgram(program);
+        program = 0;
     }
-    if (ok) return program;
-    glDeleteProgram(program);
-    int file = 0; // messages start with the file's number: "2:14(5): error"
-    sscanf(message, "%d", &file);
-    if (file < 0 || file >= s->file_count) file = 0;
-    err_set(e, ERR_GL, s->files[file], NULL, "the driver refuses shader %s: %.300s", name, message);
-    return 0;
+    free(log);
+    return program;
 }
 
 // From the cache, else compiled and put there.
@@ -147,7 +212,7 @@ static GLuint fetch(gpu *g, const splice *s, const char *name, bool drawn, error
         return program;
     }
     glDeleteProgram(program);
-    program = compile(s, name, drawn, e);
+    program = compile(g, s, name, drawn, e);
     if (!program) return 0;
     g->programs_compiled++;
     cache_store(g, s->text, program);
