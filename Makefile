@@ -18,7 +18,7 @@ endif
 # Debian packages (tests/deps.sh): what the build needs, what `make check` needs on top.
 DEPS_BUILD := gcc g++ pkg-config libopenexr-dev libopenimageio-dev libopencolorio-dev libembree-dev libegl-dev libegl-mesa0 libgl1-mesa-dri \
               libepoxy-dev libdeflate-dev libjson-c-dev libxxhash-dev
-DEPS_CHECK := libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender man-db parallel
+DEPS_CHECK := libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender man-db parallel python3
 DEPS_BENCH := gnuplot-nox
 DEPS_HOSTS := blender openimageio-tools openexr imagemagick libmagickcore-6.q16-6-extra/libmagickcore-7.q16-10-extra
 DEPS_FARM  := blender slurm-wlm munge parallel python3-yaml openimageio-tools
@@ -64,6 +64,7 @@ help:
 	@echo 'make check-farm    a sequence by Slurm, Open Job Description and GNU parallel against one command'
 	@echo 'make check-hosts   our output in Blender, oiiotool, exrmultipart and ImageMagick'
 	@echo 'make check-hard    the hard cases, all of them; check-threads: the batch under the thread sanitizer'
+	@echo 'make check-wild DIR=folder   a folder of EXR files: read how, fit, time, exit, verdict'
 	@echo 'make fuzz FUZZ_SECONDS=60   random files and frame ranges, by libFuzzer'
 	@echo 'make bench    error against time of every method (bench-unseen: on scenes rendered afresh)'
 	@echo 'make bench-error   --error: its estimate, and its time beside fixed budgets'
@@ -139,6 +140,14 @@ check-hard: deps-check
 	@$(MAKE) $(JOBS) --no-print-directory all hard
 	@SSDO_HARD=whole SSDO_SCRIPTS='tests/hard/*.sh' sh tests/run.sh $(BUILD) $(HARD)
 hard: $(HARD)
+
+# A folder of anybody's EXR files: make check-wild DIR=folder [WILD='--fov 45'] (tests/wild/check.py).
+.PHONY: check-wild
+check-wild:
+	@sh tests/deps.sh $(DEPS_BUILD) python3
+	@$(MAKE) $(JOBS) --no-print-directory all
+	@[ -n "$(DIR)" ] || { echo "make check-wild DIR=folder: which folder of EXR files?" >&2; exit 2; }
+	@python3 tests/wild/check.py $(BIN) "$(DIR)" $(WILD)
 
 # The measured tables of the hard cases: tests/hard/RESULTS.md.
 .PHONY: hard-tables

@@ -37,8 +37,9 @@ static void count_depth(const double *z, int n, int reach, edges *out)
 static void count_normals(const vec3 *n, int count, int reach, edges *out)
 {
     for (int x = reach; x < count - reach; x++) {
+        if (!(v3_dot(n[x - reach], n[x + reach]) <= 0.8)) continue;
         double a = v3_length(n[x - reach]), b = v3_length(n[x]), c = v3_length(n[x + reach]);
-        if (!(fabs(a - 1.0) < 0.01 && fabs(c - 1.0) < 0.01 && b > 0.0) || v3_dot(n[x - reach], n[x + reach]) > 0.8) continue;
+        if (!(fabs(a - 1.0) < 0.01 && fabs(c - 1.0) < 0.01 && b > 0.0)) continue;
         out->all++;
         out->between += b < 0.98;
     }

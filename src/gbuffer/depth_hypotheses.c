@@ -8,7 +8,7 @@
 #include "base/mem.h"
 #include "gbuffer/normal_hypotheses.h"
 
-enum { SAMPLES = 1500, LOOKED_AT = 40000, MOST = DEPTH_KINDS };
+enum { SAMPLES = 1200, LOOKED_AT = 40000, MOST = DEPTH_KINDS };
 static const double fits = 0.97;           // median cosine from which the normals confirm a kind
 static const double gain[2] = {2e-4, 0.3}; // of loss, and its share, that another kind must have over the renderer's
 static const double many_planes = 0.15;    // share of the looked-at pixels on planes from which they confirm a kind

@@ -28,7 +28,6 @@ static double srgb_of_linear(double v) { return v <= 0.0031308 ? v * 12.92 : 1.0
 static double decode(normal_encoding e, double v)
 {
     double a = fabs(v), u = a;
-    if (e == NORMAL_SIGNED) return v;
     if (e == NORMAL_GAMMA) u = pow(a, 2.2);
     if (e == NORMAL_SRGB) u = linear_of_srgb(a);
     if (e == NORMAL_DEGAMMA) u = pow(a, 1.0 / 2.2);
@@ -36,4 +35,4 @@ static double decode(normal_encoding e, double v)
     return 2.0 * (v < 0.0 ? -u : u) - 1.0;
 }
 
-vec3 encoding_decode(normal_encoding e, vec3 s) { return v3(decode(e, s.x), decode(e, s.y), decode(e, s.z)); }
+vec3 encoding_undo_curve(normal_encoding e, vec3 s) { return v3(decode(e, s.x), decode(e, s.y), decode(e, s.z)); }
