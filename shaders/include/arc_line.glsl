@@ -35,6 +35,10 @@ Lines lines_of(vec3 V, vec3 across, vec2 origin, float tangent) {
     return Lines(right, left);
 }
 
+// No step lies beyond this. The reach is a quotient, and drivers divide with errors of up to 2.5 units in the last place (GLSL 4.50,
+// 4.7.1): a step that lies at the reach itself, as whole pixels do under an orthographic camera, is taken by all of them.
+float last_step(Line line) { return min(line.reach * (1.0 + 4.0 * ULP), line.border); }
+
 float ball_tangent(vec3 P) {
     float squared = dot(P, P) - params.radius * params.radius;
     return squared > 0.0 ? params.radius * inversesqrt(squared) : -1.0;

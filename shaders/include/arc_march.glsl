@@ -134,10 +134,10 @@ void go_on(inout Sectors slots, inout Run run, Side s, Walk k, float at) {
 void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
     Run run = Run(true, false, 2.0, 1.0, 0.0, vec2(0.0), vec2(0.0), vec2(0.0), 0.0, 1.0, 0.0, P, N, vec3(0.0));
     Walk k = Walk(line, min(line.reach, line.border), jitter, params.radius * params.radius, footprint(1.0));
-    float before = 0.0;
+    float before = 0.0, last = last_step(line);
     for (int i = 0; i < params.steps; i++) {
         float at = step_distance(i, step_jitter, k.limit);
-        if (at > k.limit) break;
+        if (at > last) break;
         visit(slots, run, s, k, P, at, before);
         before = at;
     }

@@ -1,10 +1,10 @@
 // The march of the older methods, sample by sample: the horizon (all beyond the highest sample is blocked) and the bitmask (each
 // sample blocks from its front to `thickness` behind it on its view ray).
 void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
-    float limit = min(line.reach, line.border), lowest = 1.0;
+    float limit = min(line.reach, line.border), last = last_step(line), lowest = 1.0;
     for (int i = 0; i < params.steps; i++) {
         float at = step_distance(i, step_jitter, limit);
-        if (at > limit) break;
+        if (at > last) break;
         ivec2 q = ivec2(floor(line.origin + at * line.direction));
         float depth = FETCH_INSIDE(depth_image, q, vec4(0.0)).r;
         vec3 to = position_of(q, depth) - P;
