@@ -92,7 +92,7 @@ typedef struct options {
     bool list_devices;
     int threads;                // 0 = default
     bool explain, explain_json; // --explain, --explain=json
-    bool strict;
+    bool strict, verify;
     bool verbose, quiet, help, version;
     const char *completion; // print the completion script of this shell
 } options;

@@ -128,8 +128,7 @@ static bool is_ours(const char *name, const exr_out_attr *ours, int count)
     return false;
 }
 
-// What the attribute's pointer points at; 0 for values that are kept in the pointer's own place.
-static size_t value_size(exr_attribute_type_t type)
+size_t exr_attr_value_size(int type)
 {
     switch (type) {
     case EXR_ATTR_BOX2I:
@@ -213,7 +212,7 @@ static exr_result_t borrow(exr_context_t to, int part, const exr_attribute_t *so
     exr_result_t rv = exr_attr_declare_by_type(to, part, source->name, source->type_name, &a);
     if (rv != EXR_ERR_SUCCESS) return rv;
     if (a->type != source->type) return EXR_ERR_ATTR_TYPE_MISMATCH;
-    size_t size = value_size(a->type);
+    size_t size = exr_attr_value_size(a->type);
     if (size)
         memcpy(a->rawptr, source->rawptr, size);
     else

@@ -15,26 +15,32 @@ static bool reserve(void **buffer, uint64_t *room, uint64_t n)
     return true;
 }
 
+exr_result_t deep_read(exr_const_context_t core, int part, int y, deep_chunk *c)
+{
+    exr_result_t rv = exr_read_scanline_chunk_info(core, part, y, &c->info);
+    if (rv != EXR_ERR_SUCCESS) return rv;
+    if (!reserve(&c->packed, &c->packed_room, c->info.packed_size) ||
+        !reserve(&c->counts, &c->counts_room, c->info.sample_count_table_size))
+        return EXR_ERR_OUT_OF_MEMORY;
+    return exr_read_deep_chunk(core, part, &c->info, c->packed, c->counts);
+}
+
+void deep_free(deep_chunk *c)
+{
+    free(c->packed);
+    free(c->counts);
+}
+
 exr_result_t deep_copy(exr_context_t core, int index, const exr_out_part *p, int lines_per_chunk, int chunks)
 {
-    exr_const_context_t in = p->attributes_from->core;
-    void *packed = NULL, *counts = NULL;
-    uint64_t packed_room = 0, counts_room = 0;
+    deep_chunk c = {0};
     exr_result_t rv = EXR_ERR_SUCCESS;
     for (int i = 0; rv == EXR_ERR_SUCCESS && i < chunks; i++) {
-        exr_chunk_info_t c;
-        rv = exr_read_scanline_chunk_info(in, p->attributes_part, p->data_window.y0 + i * lines_per_chunk, &c);
-        if (rv != EXR_ERR_SUCCESS) break;
-        if (!reserve(&packed, &packed_room, c.packed_size) || !reserve(&counts, &counts_room, c.sample_count_table_size)) {
-            rv = EXR_ERR_OUT_OF_MEMORY;
-            break;
-        }
-        rv = exr_read_deep_chunk(in, p->attributes_part, &c, packed, counts);
+        rv = deep_read(p->attributes_from->core, p->attributes_part, p->data_window.y0 + i * lines_per_chunk, &c);
         if (rv == EXR_ERR_SUCCESS)
-            rv = exr_write_deep_scanline_chunk(core, index, c.start_y, packed, c.packed_size, c.unpacked_size, counts,
-                                               c.sample_count_table_size);
+            rv = exr_write_deep_scanline_chunk(core, index, c.info.start_y, c.packed, c.info.packed_size, c.info.unpacked_size,
+                                               c.counts, c.info.sample_count_table_size);
     }
-    free(packed);
-    free(counts);
+    deep_free(&c);
     return rv;
 }

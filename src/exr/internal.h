@@ -57,6 +57,9 @@ void exr_merged_close(exr_file *file);
 // True for attributes that say how pixels are stored: they are the writer's and never copied.
 bool exr_attr_structural(const char *name);
 
+// Bytes that the pointer of an attribute of this exr_attribute_type_t points at; 0 for values that are kept in its own place.
+size_t exr_attr_value_size(int type);
+
 // Declares in part `part` of `to` a copy of every attribute of the parts that p names that is not structural and not one of p's
 // own. The values are borrowed: those files must stay open until `to` is finished.
 exr_result_t exr_attr_copy_all(exr_context_t to, int part, const exr_out_part *p);

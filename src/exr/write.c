@@ -1,6 +1,7 @@
 #include "exr/write.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -205,7 +206,22 @@ static bool report(exr_result_t rv, const outfile *file, const char *path, error
                    exr_get_default_error_message(rv));
 }
 
+// From the disk and not from memory, as far as the system lets itself be asked.
+static bool inspect(const exr_inspector *inspector, const outfile *file, error *e)
+{
+    if (!inspector) return true;
+    (void)!fsync(file->fd); // committing says what this may say
+    (void)!posix_fadvise(file->fd, 0, 0, POSIX_FADV_DONTNEED);
+    return inspector->look(inspector->context, file->temp, e);
+}
+
 bool exr_write(const char *path, const exr_out_part *parts, int part_count, int threads, error *e)
+{
+    return exr_write_inspected(path, parts, part_count, threads, NULL, e);
+}
+
+bool exr_write_inspected(const char *path, const exr_out_part *parts, int part_count, int threads, const exr_inspector *inspector,
+                         error *e)
 {
     if (!exr_check_parts(path, parts, part_count, e)) return false;
     outfile file = OUTFILE_NONE;
@@ -223,8 +239,8 @@ bool exr_write(const char *path, const exr_out_part *parts, int part_count, int 
     for (int i = 0; rv == EXR_ERR_SUCCESS && i < part_count; i++) rv = write_part(core, i, &parts[i], threads, e);
     exr_result_t finished = core ? exr_finish(&core) : EXR_ERR_SUCCESS;
     if (rv == EXR_ERR_SUCCESS) rv = finished;
-    if (rv == EXR_ERR_SUCCESS) return outfile_commit(&file, e);
-    report(rv, &file, path, e);
+    if (rv == EXR_ERR_SUCCESS && inspect(inspector, &file, e)) return outfile_commit(&file, e);
+    if (rv != EXR_ERR_SUCCESS) report(rv, &file, path, e);
     outfile_abort(&file);
     return false;
 }

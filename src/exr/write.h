@@ -55,6 +55,17 @@ typedef struct exr_out_part {
     int attribute_count;
 } exr_out_part;
 
+// What is asked about the file once all of it is on the disk and before it takes its name: false, with *e filled, and it is not
+// kept. `written` is its temporary name.
+typedef struct exr_inspector {
+    bool (*look)(const void *context, const char *written, error *e);
+    const void *context;
+} exr_inspector;
+
+// exr_write with an inspector; NULL for none.
+bool exr_write_inspected(const char *path, const exr_out_part *parts, int part_count, int threads, const exr_inspector *inspector,
+                         error *e);
+
 // Writes scanline parts. Two channels of one name in a part, or two parts of one name, are ERR_OUTPUT.
 bool exr_write(const char *path, const exr_out_part *parts, int part_count, int threads, error *e);
 

@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "exr/write.h"
+#include "pipeline/verify.h"
 #include "pipeline/views.h"
 
 enum { MAX_OURS = LAYER_COUNT * 4 + 5, NAME_SIZE = 128, MAX_ATTRS = 12 + VIEWS_MAX };
@@ -351,15 +352,37 @@ static bool keep_part(book *k, const job *j, const frame_result *r, int i, error
     return true;
 }
 
+static void our_part(const frame_result *r, char *name, size_t size)
+{
+    const char *view = view_in_names(r->file, r->view) ? NULL : r->view;
+    snprintf(name, size, "ssdo%s%s", view ? "." : "", view ? view : "");
+}
+
+// A part that an earlier run of ours made.
+static bool is_earlier_run(const frame_result *r, int part)
+{
+    char name[64];
+    our_part(r, name, sizeof name);
+    return strcmp(r->file->parts[part].name, name) == 0 && exr_attr_exists(r->file, part, "ssdo/version");
+}
+
+bool output_replaces(const job *j, const frame_result *r, int part, const char *channel)
+{
+    for (; r; r = r->next_view) {
+        if (!takes(&r->file->parts[part], r->view)) continue;
+        if (is_replaced(j, r, channel, !r->second_part) || (r->second_part && is_earlier_run(r, part))) return true;
+    }
+    return false;
+}
+
 // The view's parts as they are, and one with our layers: "ssdo", or "ssdo.left".
 static bool add_part(book *k, assembly *a, const job *j, frame_result *r, error *e)
 {
     const exr_file *f = r->file;
     const char *view = view_in_names(f, r->view) ? NULL : r->view;
-    snprintf(a->part_name, sizeof a->part_name, "ssdo%s%s", view ? "." : "", view ? view : "");
+    our_part(r, a->part_name, sizeof a->part_name);
     for (int i = 0; i < f->part_count; i++) {
-        bool earlier_run = strcmp(f->parts[i].name, a->part_name) == 0 && exr_attr_exists(f, i, "ssdo/version");
-        if (takes(&f->parts[i], r->view) && !earlier_run && !keep_part(k, j, r, i, e)) return false;
+        if (takes(&f->parts[i], r->view) && !is_earlier_run(r, i) && !keep_part(k, j, r, i, e)) return false;
     }
     exr_out_part *mine = k->shared = &k->parts[k->part_count++];
     *mine = part_like(j->o, f, r->resolution.main_part);
@@ -423,6 +446,18 @@ static void free_book(book *k)
     free(k->sources);
 }
 
+typedef struct inspection {
+    const job *j;
+    const frame_result *r;
+    const char *path;
+} inspection;
+
+static bool look_again(const void *context, const char *written, error *e)
+{
+    const inspection *i = context;
+    return verify_written(i->j, i->r, written, i->path, e);
+}
+
 bool output_write(const job *j, frame_result *r, const char *path, error *e)
 {
     book k = {.parts = mem_zero((size_t)r->file->part_count + VIEWS_MAX, sizeof *k.parts, e)};
@@ -432,7 +467,9 @@ bool output_write(const job *j, frame_result *r, const char *path, error *e)
     if (ok && others_first) ok = keep_others(&k, j, r, e);
     for (frame_result *v = r; ok && v; v = v->next_view) ok = add_view(&k, j, v, e);
     if (ok && !others_first) ok = keep_others(&k, j, r, e);
-    ok = ok && exr_write(path, k.parts, k.part_count, j->threads, e);
+    const inspection look = {j, r, path};
+    const exr_inspector inspector = {look_again, &look};
+    ok = ok && exr_write_inspected(path, k.parts, k.part_count, j->threads, j->o->verify ? &inspector : NULL, e);
     free_book(&k);
     return ok;
 }

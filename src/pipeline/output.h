@@ -11,6 +11,10 @@ bool output_check_names(const options *o, const exr_file *file, const char *view
 // --layout multipart: true if the part goes through as stored, so that its channels need not be read for writing.
 bool output_keeps_chunks(const options *o, const exr_file *file, int part, const plan *p);
 
+// Whether a channel of the input's part is made anew, or left out with what an earlier run made, instead of being passed through.
+// r: the first view, once it was written.
+bool output_replaces(const job *j, const frame_result *r, int part, const char *channel);
+
 // Writes the file. Of a stereo file each view is treated so: its parts keep their `view`, and our layers have the same names in
 // each; where channel names tell the views (one part), ours do too: occlusion.right.R. Parts of no filtered view pass through as
 // they are. A single-part input stays single-part. Parts of a multi-part input
