@@ -6,8 +6,8 @@
 
 enum { HELP_COLUMN = 30, HELP_WIDTH = 100 };
 
-// Words of `text` from column `at` on, wrapped to HELP_COLUMN .. HELP_WIDTH.
-static void print_wrapped(FILE *to, int at, const char *text)
+// Words of `text` from column `at` on, wrapped to HELP_COLUMN .. HELP_WIDTH. Returns the column after them.
+static int print_wrapped(FILE *to, int at, const char *text)
 {
     while (*text) {
         size_t length = strcspn(text, " ");
@@ -22,12 +22,12 @@ static void print_wrapped(FILE *to, int at, const char *text)
         text += length;
         text += strspn(text, " ");
     }
-    fprintf(to, "\n");
+    return at;
 }
 
 static void print_help_row(FILE *to, const option_row *row)
 {
-    char left[96], text[512];
+    char left[96], fallback[256];
     char letter[8] = "    ";
     if (row->letter) snprintf(letter, sizeof letter, "-%c, ", row->letter);
     int n = snprintf(left, sizeof left, "  %s--%s%s%s", letter, row->name, row->argument ? " " : "",
@@ -38,11 +38,12 @@ static void print_help_row(FILE *to, const option_row *row)
         n = 0;
     }
     fprintf(to, "%*s", HELP_COLUMN - n, "");
-    if (row->fallback)
-        snprintf(text, sizeof text, "%s (default: %s)", row->help, row->fallback);
-    else
-        snprintf(text, sizeof text, "%s", row->help);
-    print_wrapped(to, HELP_COLUMN, text);
+    int at = print_wrapped(to, HELP_COLUMN, row->help);
+    if (row->fallback) {
+        snprintf(fallback, sizeof fallback, "(default: %s)", row->fallback);
+        print_wrapped(to, at, fallback);
+    }
+    fprintf(to, "\n");
 }
 
 void options_print_help(FILE *to)

@@ -1,5 +1,6 @@
 #include "passes/method.h"
 
+#include <stdio.h>
 #include <string.h>
 
 const method methods[] = {
@@ -133,11 +134,26 @@ const method method_raytrace = {
     .run = pass_raytrace,
 };
 
-const method *method_find(const char *name)
+const method *method_at(int i)
 {
-    for (const method *m = methods; m->name; m++)
-        if (strcmp(m->name, name) == 0) return m;
-    return strcmp(method_raytrace.name, name) == 0 ? &method_raytrace : NULL;
+    int pictures = (int)(sizeof methods / sizeof *methods) - 1; // without the row that ends them
+    return i < pictures ? &methods[i] : i == pictures ? &method_raytrace : NULL;
 }
 
-const char *method_names(void) { return "arc, ssdo, s3ho, alchemy, hemisphere, hbao, gtao, bitmask, raytrace"; }
+const method *method_find(const char *name)
+{
+    const method *m;
+    for (int i = 0; (m = method_at(i)); i++)
+        if (strcmp(m->name, name) == 0) return m;
+    return NULL;
+}
+
+void method_names(char *text, size_t size, const char *between)
+{
+    const method *m;
+    text[0] = '\0';
+    for (int i = 0; (m = method_at(i)); i++) {
+        size_t used = strlen(text);
+        snprintf(text + used, size - used, "%s%s", i ? between : "", m->name);
+    }
+}

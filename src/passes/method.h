@@ -22,8 +22,13 @@ typedef struct method {
 
 extern const method methods[];               // that work from the picture alone; ends with a NULL name
 extern const method method_raytrace;         // the reference, which needs the scene's mesh
-const method *method_find(const char *name); // any of them
-const char *method_names(void);              // "arc, ssdo, ..."
-enum { METHOD_DEFAULT = 0 };                 // index of the default row
+const method *method_at(int i);              // all of them, from 0 on; NULL after the last
+const method *method_find(const char *name); // NULL: there is none
+// The names of all, in the order of the rows.
+void method_names(char *text, size_t size, const char *between);
+enum {
+    METHOD_DEFAULT = 0, // index of the default row
+    METHOD_NAMES = 256  // room for the names of all
+};
 
 #endif

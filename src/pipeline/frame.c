@@ -27,6 +27,8 @@ void job_init(job *j, const options *o, log_t *log)
 {
     *j = (job){.o = o, .log = log, .threads = o->threads > 0 ? o->threads : threads_default()};
     gpu_set_up();
+    if (!colour_config(o->ocio))
+        log_info(log, "colour: no OpenColorIO config, so beauty, albedo and environment count as linear");
 }
 
 static bool open_device(job *j, error *e)
@@ -39,8 +41,6 @@ static bool open_device(job *j, error *e)
 bool job_open(job *j, const options *o, log_t *log, error *e)
 {
     job_init(j, o, log);
-    if (!colour_config(o->ocio))
-        log_info(log, "colour: no OpenColorIO config, so beauty, albedo and environment count as linear");
     return open_device(j, e);
 }
 

@@ -62,11 +62,10 @@ typedef struct frame_result {
     float *layers[LAYER_COUNT];
     struct layer_band *bands; // of the layers, on their way from the device (read_back.h); owned
     int band_count;
-    float *stored_sh[SH_IMAGES]; // --from-sh: what the input brought along, else NULL
-    bool prepared;               // by filter_prepare
-    bool uncovered;              // the coverage says nothing that the depth does not
-    gbuffer half;                // set.half: the frame at half its size, until the passes have run
-    bool second_part;
+    float *stored_sh[SH_IMAGES];    // --from-sh: what the input brought along, else NULL
+    bool prepared;                  // by filter_prepare
+    bool uncovered;                 // the coverage says nothing that the depth does not
+    gbuffer half;                   // set.half: the frame at half its size, until the passes have run
     const char *view;               // the stereo view this is, the file's string; NULL without views
     struct frame_result *next_view; // owned; shares the file
 } frame_result;

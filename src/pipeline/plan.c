@@ -125,10 +125,11 @@ static bool check_rounds(const method *m, const options *o, error *e)
 bool plan_make(const options *o, const exr_file *file, const resolution *r, plan *p, log_t *log, error *e)
 {
     const char *name = o->from_sh ? "s3ho" : o->method ? o->method : methods[METHOD_DEFAULT].name;
+    char all[METHOD_NAMES];
     *p = (plan){.method = method_find(name), .from_sh = o->from_sh};
+    method_names(all, sizeof all, ", ");
     if (!p->method)
-        return err_set(e, ERR_USAGE, NULL, NULL, "--method: there is no method '%s'; the methods are %s", o->method,
-                       method_names());
+        return err_set(e, ERR_USAGE, NULL, NULL, "--method: there is no method '%s'; the methods are %s", o->method, all);
     if (p->method->needs_mesh && !o->mesh)
         return err_set(e, ERR_USAGE, NULL, NULL, "--method %s needs the scene's surfaces; name them with --mesh FILE.obj", name);
     if (o->mesh && !p->method->needs_mesh) log_warn(log, "mesh", "--mesh is not used: only --method raytrace does");

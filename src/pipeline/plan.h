@@ -33,7 +33,7 @@ typedef struct plan {
 } plan;
 
 // Decides. A default layer that cannot be made is left out with a warning; one named in --layers is ERR_INPUT naming the channel
-// that is missing. `env_given`: --env was used.
+// that is missing.
 bool plan_make(const options *o, const exr_file *file, const resolution *r, plan *out, log_t *log, error *e);
 
 #endif

@@ -114,7 +114,8 @@ static bool has_display(const options *o) { return o->display || o->view || colo
 bool preview_check(const options *o, error *e)
 {
     float grey[3] = {0.18f, 0.18f, 0.18f};
-    return !o->preview || !has_display(o) || colour_to_display(o->ocio, o->display, o->view, grey, 1, e);
+    if (!o->preview) return true;
+    return images_check_png(o->preview, e) && (!has_display(o) || colour_to_display(o->ocio, o->display, o->view, grey, 1, e));
 }
 
 // From scene-linear light to codes, in place: by the config's view, else by sRGB's curve after its primaries.

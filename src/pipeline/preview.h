@@ -15,8 +15,8 @@
 // light in the primaries of a chromaticities attribute is brought to sRGB's.
 bool preview_write(const options *o, const frame_result *r, const char *path, error *e);
 
-// Whether the display and view that previews would go through are there, to be asked before any work is done: an error names
-// those there are. True where no preview is asked for.
+// Whether the module that writes a PNG and the display and view that previews would go through are there, to be asked before any
+// work is done: an error names what is missing, and the displays and views there are. True where no preview is asked for.
 bool preview_check(const options *o, error *e);
 
 #endif

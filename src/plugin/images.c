@@ -30,13 +30,19 @@ bool images_read_exr_native(const char *path, int part, int width, int height, i
     return err_set(e, ERR_INPUT, path, NULL, "is truncated or damaged: %s; render it or copy it again", message);
 }
 
+static images_encode_png_fn png_encoder(const char *path, error *e)
+{
+    return (images_encode_png_fn)module_function(&images, "ssdo_images_encode_png", "writing a PNG", ERR_OUTPUT, path, e);
+}
+
+bool images_check_png(const char *path, error *e) { return png_encoder(path, e) != NULL; }
+
 bool images_write_png(const char *path, int width, int height, const uint8_t *rgb, const char *key, const char *label, error *e)
 {
     char message[MODULE_MESSAGE] = "";
     void *bytes = NULL;
     size_t size = 0;
-    images_encode_png_fn encode =
-        (images_encode_png_fn)module_function(&images, "ssdo_images_encode_png", "writing a PNG", ERR_OUTPUT, path, e);
+    images_encode_png_fn encode = png_encoder(path, e);
     if (!encode) return false;
     if (!encode(width, height, rgb, key, label, &bytes, &size, message, sizeof message))
         return err_set(e, ERR_OUTPUT, path, NULL, "cannot be made into a PNG: %s", message);

@@ -24,4 +24,7 @@ bool images_read_exr_native(const char *path, int part, int width, int height, i
 // Writes 8-bit RGB, top row first, whole or not at all (base/outfile.h). label: a text that the file carries as `key`.
 bool images_write_png(const char *path, int width, int height, const uint8_t *rgb, const char *key, const char *label, error *e);
 
+// Whether images_write_png has its module; path: for the error alone.
+bool images_check_png(const char *path, error *e);
+
 #endif

@@ -27,6 +27,9 @@ B
 complete() { bash "$dir/complete.bash" "$dir/usr/share/bash-completion/completions/ssdo-filter" ssdo-filter "$@" | sort -u | tr '\n' ' '; }
 "$SSDO" --help | sed -n 's/^  *\(-., \)*--\([a-z-]*\).*/--\2/p' | sort -u | tr '\n' ' ' >"$dir/options"
 [ "$(complete --)" = "$(cat "$dir/options")" ] || die "bash offers $(complete --), help has $(cat "$dir/options")"
+methods=$("$SSDO" samples/still.exr -o "$dir/none.exr" --method none 2>&1 | sed 's/.*methods are //; s/,//g' | tr ' ' '\n' | sort | tr '\n' ' ')
+case $methods in *raytrace*) ;; *) die "the methods are said to be $methods" ;; esac
+[ "$(complete --method "")" = "$methods" ] || die "methods: $(complete --method "") instead of $methods"
 [ "$(complete --method h)" = "hbao hemisphere " ] || die "methods: $(complete --method h)"
 [ "$(complete --method = h)" = "hbao hemisphere " ] || die "--method=: $(complete --method = h)"
 [ "$(complete --layers occlusion,ind)" = "occlusion,indirect " ] || die "layers: $(complete --layers occlusion,ind)"

@@ -56,10 +56,25 @@ static void find_section(char *text, char **begin, char **end)
     *begin = strchr(*begin, '\n') + 1;
 }
 
+// A copy with one space for each run of white space.
+static char *on_one_line(const char *text)
+{
+    char *flat = malloc(strlen(text) + 1), *to = flat;
+    assert_non_null(flat);
+    for (; *text; text++)
+        if (!strchr(" \n", *text))
+            *to++ = *text;
+        else if (to > flat && to[-1] != ' ')
+            *to++ = ' ';
+    *to = '\0';
+    return flat;
+}
+
+// Name, argument, text and default, whole.
 static void help_lists_every_row(void **state)
 {
     (void)state;
-    char *help = printed(options_print_help);
+    char *help = printed(options_print_help), *flat = on_one_line(help);
     for (int i = 0; i < option_row_count; i++) {
         const option_row *row = &option_rows[i];
         char left[128];
@@ -72,7 +87,12 @@ static void help_lists_every_row(void **state)
                      row->argument ? row->argument : "");
         char *at = strstr(help, left);
         if (!at || !strchr(" \n", at[strlen(left)])) fail_msg("no line '%s'", left + 1);
+        char text[2048];
+        snprintf(text, sizeof text, "--%s%s%s %s%s%s%s", row->name, row->argument ? " " : "", row->argument ? row->argument : "",
+                 row->help, row->fallback ? " (default: " : "", row->fallback ? row->fallback : "", row->fallback ? ")" : "");
+        if (!strstr(flat, text)) fail_msg("--help does not say '%s'", text);
     }
+    free(flat);
     for (char *line = help; *line; line = strchr(line, '\n') + 1) assert_true(strcspn(line, "\n") <= 100);
     free(help);
 }
