@@ -31,12 +31,17 @@ void deep_free(deep_chunk *c)
     free(c->counts);
 }
 
-exr_result_t deep_copy(exr_context_t core, int index, const exr_out_part *p, int lines_per_chunk, int chunks)
+exr_result_t deep_copy(exr_context_t core, int index, const exr_out_part *p, int lines_per_chunk, int chunks, error *e)
 {
     deep_chunk c = {0};
     exr_result_t rv = EXR_ERR_SUCCESS;
     for (int i = 0; rv == EXR_ERR_SUCCESS && i < chunks; i++) {
         rv = deep_read(p->attributes_from->core, p->attributes_part, p->data_window.y0 + i * lines_per_chunk, &c);
+        if (rv != EXR_ERR_SUCCESS && rv != EXR_ERR_OUT_OF_MEMORY)
+            err_set(
+                e, ERR_INPUT, p->attributes_from->path, NULL,
+                "its deep part '%s' is truncated or damaged (%s); render it or copy it again, or leave it out with --keep none",
+                p->name, exr_get_default_error_message(rv));
         if (rv == EXR_ERR_SUCCESS)
             rv = exr_write_deep_scanline_chunk(core, index, c.info.start_y, c.packed, c.info.packed_size, c.info.unpacked_size,
                                                c.counts, c.info.sample_count_table_size);

@@ -14,7 +14,8 @@ typedef struct deep_chunk {
 exr_result_t deep_read(exr_const_context_t core, int part, int y, deep_chunk *out);
 void deep_free(deep_chunk *chunk);
 
-// Writes the chunks of a deep scanline part (p->attributes_from) to part `index` of `core` as they are stored.
-exr_result_t deep_copy(exr_context_t core, int index, const exr_out_part *p, int lines_per_chunk, int chunks);
+// Writes the chunks of a deep scanline part (p->attributes_from) to part `index` of `core` as they are stored. A chunk of the
+// input that cannot be read is ERR_INPUT naming that file.
+exr_result_t deep_copy(exr_context_t core, int index, const exr_out_part *p, int lines_per_chunk, int chunks, error *e);
 
 #endif

@@ -178,7 +178,7 @@ static exr_result_t write_part(exr_context_t core, int index, const exr_out_part
     if (rv == EXR_ERR_SUCCESS) rv = exr_get_chunk_count(core, index, &chunks);
     j.lines = lines;
     if (rv == EXR_ERR_SUCCESS && part->deep)
-        rv = deep_copy(core, index, part, lines, chunks);
+        rv = deep_copy(core, index, part, lines, chunks, e);
     else if (rv == EXR_ERR_SUCCESS && !threads_for(threads, (size_t)chunks, write_chunk, &j))
         rv = j.result;
     for (int i = 0; j.workers && i < threads; i++) {

@@ -131,7 +131,7 @@ said "the file has R G B;" rgb
 # --- a deep part beside the flat one
 make flat.exr rgba "" "$rgba,$z"
 oiiotool flat.exr --ch A,Z --deepen --eraseattrib '.*' --attrib oiio:subimagename deep -o deep.exr >/dev/null 2>&1 || say "oiiotool --deepen"
-for order in "flat.exr deep.exr" "deep.exr flat.exr"; do
+for order in "deep.exr flat.exr" "flat.exr deep.exr"; do
     # shellcheck disable=SC2086
     join mixed.exr $order
     for more in "" "--layout multipart" "--keep none"; do
@@ -146,6 +146,10 @@ for order in "flat.exr deep.exr" "deep.exr flat.exr"; do
         cmp -s deep_in.txt deep_out.txt || say "the deep part is another ($order $more)"
     done
 done
+head -c "$(($(stat -c %s mixed.exr) - 500))" mixed.exr >cut.exr # the deep part's end is missing
+# shellcheck disable=SC2086
+run cut.exr $few -o no.exr
+[ $code = 3 ] && [ ! -e no.exr ] || say "a damaged file with a deep part: exit $code"
 run deep.exr --fov 40 -o no.exr
 [ $code = 3 ] || say "a deep file was taken"
 said "only deep data" deep
