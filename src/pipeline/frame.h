@@ -66,6 +66,7 @@ typedef struct frame_result {
     bool prepared;                  // by filter_prepare
     bool uncovered;                 // the coverage says nothing that the depth does not
     gbuffer half;                   // set.half: the frame at half its size, until the passes have run
+    bool second_part;               // our layers went into a part of their own
     const char *view;               // the stereo view this is, the file's string; NULL without views
     struct frame_result *next_view; // owned; shares the file
 } frame_result;

@@ -391,6 +391,7 @@ static bool add_part(book *k, assembly *a, const job *j, frame_result *r, error 
     mine->attributes_from = NULL;
     if (!room(mine, MAX_OURS * view_count(r), e)) return false;
     append_ours(a, mine);
+    r->second_part = true;
     if (!j->o->multipart)
         log_warn(j->log, "second-part",
                  "%s: its parts differ in window or share channel names, so our layers go into a part named '%s'", f->path,
