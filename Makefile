@@ -45,9 +45,13 @@ CXXFLAGS ?= -O2 -g
 ALL_CXXFLAGS = -std=c++17 -fPIC -fvisibility=hidden -Isrc $(CXXFLAGS) -Wall -Wextra $(SANFLAGS)
 
 SRC      := $(filter-out src/main.c,$(wildcard src/*/*.c))
-OBJ      := $(SRC:%.c=$(BUILD)/%.o) $(BUILD)/shaders.o
+OBJ      := $(SRC:%.c=$(BUILD)/%.o) $(BUILD)/shaders.o $(BUILD)/decides.o
 SHADERS  := $(wildcard shaders/*.comp)
 GLSL     := $(SHADERS) $(wildcard shaders/include/*.glsl shaders/params/*.glsl)
+# What decides pixels, beside the settings and the inputs: a change of it makes --skip-existing make frames again.
+DECIDES  := $(sort $(GLSL) $(wildcard src/exr/*.[ch] src/gbuffer/*.[ch] src/light/*.[ch] src/passes/*.[ch] src/plugin/*_shim.cpp) \
+              src/base/half.c src/base/half.h src/base/vec.h src/gpu/program.c \
+              $(foreach f,filter frame layers output plan read_back stored views,$(wildcard src/pipeline/$(f).[ch])))
 BIN      := $(BUILD)/ssdo-filter
 PLUGIN   := $(BUILD)/ssdo-images.so $(BUILD)/ssdo-colour.so $(BUILD)/ssdo-trace.so
 UNIT     := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))
@@ -99,6 +103,12 @@ $(BUILD)/shaders.c: $(GLSL) shaders/embed.sh
 	@mkdir -p $(@D)
 	$(Q)sh shaders/embed.sh shaders $(GLSL) >$@.tmp && mv $@.tmp $@
 $(BUILD)/shaders.o: $(BUILD)/shaders.c src/gpu/shaders.h
+	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $<
+
+$(BUILD)/decides.c: $(DECIDES) src/pipeline/decides.sh
+	@mkdir -p $(@D)
+	$(Q)LC_ALL=C sh src/pipeline/decides.sh $(DECIDES) >$@.tmp && mv $@.tmp $@
+$(BUILD)/decides.o: $(BUILD)/decides.c src/pipeline/decides.h
 	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $<
 
 # OpenImageIO, OpenColorIO and Embree live in modules of their own, opened on demand: linking OpenImageIO costs every run 290 ms.

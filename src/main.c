@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/knobs.h"
 #include "base/mem.h"
 #include "base/outfile.h"
 #include "base/text.h"
@@ -47,13 +48,14 @@ static bool run_frame(job *j, error *e)
     progress p;
     progress_begin(&p, o->progress, 1, j->log);
     j->progress = &p;
-    bool ok = true;
-    const char *why = resume_skips(j, o->inputs, o->input_count, o->output);
+    frame_record record;
+    bool ok = record_make(j, 0, &record, e);
+    const char *why = ok ? resume_skips(j, 0, o->inputs, o->input_count, o->output, &record) : NULL;
     if (why) {
         progress_line(&p, "%s: skipped, %s", o->output, why);
         progress_finish(&p, PROGRESS_STEPS);
     } else {
-        ok = frame_run_files(j, o->inputs, o->input_count, o->output, &r, e) &&
+        ok = ok && frame_run_files(j, o->inputs, o->input_count, o->output, &record, &r, e) &&
              (!o->preview || preview_write(o, &r, o->preview, e)) && (!o->report || report_write(j, &r, o->output, o->report, e));
     }
     frame_free(&r);
@@ -70,12 +72,13 @@ static bool check_targets(const options *o, error *e)
 }
 
 // Nothing is opened before it is sure that nothing will be lost; a sequence's frames are listed and compared by the batch.
-static bool run_on(const options *o, const run_files *files, const volatile int *stop_signal, log_t *log, error *e)
+static bool run_on(const options *o, run_files *files, const volatile int *stop_signal, log_t *log, error *e)
 {
     job j;
     if (!batch_is(o) && !run_files_check(files, (const int[]){0}, 1, e)) return false;
     // A single frame is read while the context opens; what was made before is compared with the device first.
     bool alone = !batch_is(o) && !o->skip_existing;
+    run_files_read(files, o->skip_exact);
     if (alone) job_init(&j, o, log);
     bool ok = (alone || job_open(&j, o, log, e)) && check_targets(o, e);
     j.stop = stop_signal;
@@ -86,8 +89,19 @@ static bool run_on(const options *o, const run_files *files, const volatile int 
     return ok;
 }
 
+// For tests and for work on the shaders: nobody should have one set unknowingly.
+static void warn_of_knobs(log_t *log)
+{
+    for (const knob *k = knobs; k->name; k++)
+        if (k->pixels && knob_value(k->name))
+            log_warn(log, k->name,
+                     "the environment variable %s is set (%s): pixels may differ from those without it; the record names it",
+                     k->name, knob_value(k->name));
+}
+
 static bool run(const options *o, const volatile int *stop_signal, log_t *log, error *e)
 {
+    warn_of_knobs(log);
     run_files files;
     names_warn(o, log);
     bool ok = run_files_list(o, &files, e) && run_on(o, &files, stop_signal, log, e);

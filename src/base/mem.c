@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/knobs.h"
+
 enum { PICTURE = 1 << 16 }; // bytes from which a block counts as a picture
 
 void mem_set_up(void)
@@ -18,7 +20,7 @@ void mem_set_up(void)
 static bool injected(void)
 {
     static atomic_long count;
-    const char *at = getenv("SSDO_FAIL_ALLOC");
+    const char *at = knob_value("SSDO_FAIL_ALLOC");
     return at && atomic_fetch_add(&count, 1) + 1 == atol(at);
 }
 
@@ -63,7 +65,7 @@ char *mem_string(const char *s, error *e)
 
 size_t mem_available(void)
 {
-    const char *said = getenv("SSDO_MEMORY");
+    const char *said = knob_value("SSDO_MEMORY");
     if (said && *said) return (size_t)strtoull(said, NULL, 10);
     FILE *f = fopen("/proc/meminfo", "r");
     unsigned long long kib = 0;

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "base/digest.h"
 #include "base/error.h"
 
 enum { OPT_MAX_INPUTS = 32 };
@@ -81,8 +82,9 @@ typedef struct options {
     bool output_float;
 
     const char *frames; // --frames; NULL = every existing file of the pattern
-    bool missing_skip, skip_existing, keep_going;
-    int radius_from; // frame that the automatic radius of a sequence is measured on; INT_MIN = the lowest existing
+    bool missing_skip, keep_going;
+    bool skip_existing, skip_exact; // --skip-existing, --skip-existing=exact
+    int radius_from;                // frame that the automatic radius of a sequence is measured on; INT_MIN = the lowest existing
 
     const char *preview, *report;
     const char *display, *view; // of the config, for previews; NULL = its defaults
@@ -108,7 +110,12 @@ void options_print_help(FILE *to);
 void options_print_man(FILE *to);
 
 // The settings that change pixels, as they would be typed ("--method ssdo --samples 64"), options at their default left out: the
-// header attribute ssdo/args. No paths but the base name of --env, no frames, threads, device, host or time.
-bool options_record(const options *o, char *buf, unsigned long size);
+// header attribute ssdo/args. Before them, as a shell takes them, the environment variables that can change pixels
+// (base/knobs.h). No paths but base names, no frames, threads, device, host or time. To be freed; NULL with ERR_MEMORY.
+char *options_record(const options *o, error *e);
+
+// Adds every setting that decides the bytes of the output, by name and value: those of the record, and how the file is laid out.
+// What a path names is no part of it.
+bool options_digest(const options *o, digester *d, error *e);
 
 #endif

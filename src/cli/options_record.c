@@ -5,20 +5,27 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/knobs.h"
+#include "base/mem.h"
 #include "cli/options.h"
 #include "cli/options_table.h"
 
 typedef struct record {
-    char *buf;
-    size_t size, used;
-    bool full;
+    char *buf; // grows
+    size_t used, room;
+    error *e;
+    bool failed;
 } record;
 
 static void put(record *r, const char *text, size_t n)
 {
-    if (r->used + n + 1 > r->size) {
-        r->full = true;
-        return;
+    if (r->used + n + 1 > r->room) {
+        size_t room = 2 * (r->used + n + 1);
+        char *grown = r->failed ? NULL : mem_grow(r->buf, room, 1, r->e);
+        r->failed = !grown;
+        if (r->failed) return;
+        r->buf = grown;
+        r->room = room;
     }
     memcpy(r->buf + r->used, text, n);
     r->used += n;
@@ -120,19 +127,71 @@ static void put_row(record *r, const option_row *row, const options *o, const op
     put_value(r, value);
 }
 
-bool options_record(const options *o, char *buf, unsigned long size)
+// As a shell takes it, before the command.
+static void put_knob(record *r, const knob *k, const char *value)
 {
-    record r = {.buf = buf, .size = size};
-    if (size == 0) return false;
-    buf[0] = '\0';
-    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (!c) return false;
-    locale_t before = uselocale(c);
+    const char *slash = k->path ? strrchr(value, '/') : NULL;
+    if (r->used) put_string(r, " ");
+    put_string(r, k->name);
+    put_string(r, "=");
+    put_value(r, slash ? slash + 1 : value);
+}
+
+// Puts the calling thread into the C locale; the way back by leave_c_locale.
+typedef struct c_locale {
+    locale_t made, before;
+} c_locale;
+
+static bool enter_c_locale(c_locale *l, error *e)
+{
+    *l = (c_locale){0};
+    l->made = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (!l->made) return err_set(e, ERR_MEMORY, NULL, NULL, "out of memory");
+    l->before = uselocale(l->made);
+    return true;
+}
+
+static void leave_c_locale(const c_locale *l)
+{
+    uselocale(l->before);
+    freelocale(l->made);
+}
+
+char *options_record(const options *o, error *e)
+{
+    record r = {.e = e};
     options defaults;
+    c_locale l;
+    if (!enter_c_locale(&l, e)) return NULL;
     options_defaults(&defaults);
+    put(&r, "", 0);
+    for (const knob *k = knobs; k->name; k++)
+        if (k->pixels && knob_value(k->name)) put_knob(&r, k, knob_value(k->name));
     for (int i = 0; i < option_row_count; i++)
         if (option_rows[i].pixels) put_row(&r, &option_rows[i], o, &defaults);
-    uselocale(before);
-    freelocale(c);
-    return !r.full;
+    leave_c_locale(&l);
+    if (!r.failed) return r.buf;
+    free(r.buf);
+    return NULL;
+}
+
+// Defaults too: another version may have others.
+bool options_digest(const options *o, digester *d, error *e)
+{
+    char buf[64];
+    c_locale l;
+    if (!enter_c_locale(&l, e)) return false;
+    for (int i = 0; i < option_row_count; i++) {
+        const option_row *row = &option_rows[i];
+        if (!row->pixels && !row->bytes) continue;
+        digest_put_text(d, row->name);
+        digest_put_text(d, value_text(row, o, buf, sizeof buf));
+    }
+    for (const knob *k = knobs; k->name; k++) {
+        if (!k->pixels || !knob_value(k->name)) continue;
+        digest_put_text(d, k->name);
+        digest_put_text(d, knob_value(k->name));
+    }
+    leave_c_locale(&l);
+    return true;
 }

@@ -53,6 +53,7 @@ typedef struct option_row {
     bool may_be_empty;        // an OPT_TEXT may be ""
     option_group group;
     bool pixels;          // changes pixels or which layers exist: belongs into the header record
+    bool bytes;           // changes no pixel but how the file is laid out
     const char *fallback; // the default as the help shows it; NULL when "not given" needs no words
     bool hidden;          // for build scripts: not in the help, the manual and the completions
     const char *help;     // whole sentences

@@ -2,6 +2,7 @@
 #include <errno.h>
 #include <stdint.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/infile.h"
 #include "exr/internal.h"
@@ -225,4 +226,21 @@ bool exr_check_header(const char *path, int fd, size_t size, error *e)
 {
     walker w = {.fd = fd, .path = path, .size = size, .e = e};
     return check_stream(&w);
+}
+
+// The table begins with the offset of a chunk, which lies behind it.
+uint64_t exr_head_bytes(const char *path)
+{
+    enum { MOST = 1 << 26 };
+    error ignored = {0};
+    size_t size = 0;
+    uint64_t first = 0;
+    uint8_t b[8] = {0};
+    int fd = infile_open(path, (infile_kind){NULL, ERR_INPUT}, &size, &ignored);
+    if (fd < 0) return 0;
+    walker w = {.fd = fd, .path = path, .size = size, .e = &ignored};
+    if (check_stream(&w) && take(&w, b, sizeof b))
+        for (int i = 7; i >= 0; i--) first = first << 8 | b[i];
+    close(fd);
+    return first > w.at && first < w.size && first - w.at < MOST ? first : w.at;
 }

@@ -65,6 +65,9 @@ typedef struct exr_file {
     int member_count;
 } exr_file;
 
+// The bytes of a file's headers and its first chunk table, 0 for a file that is no OpenEXR file.
+uint64_t exr_head_bytes(const char *path);
+
 // Opens and checks the headers of all parts; reads no pixels. On failure *out is NULL and e names the file.
 bool exr_file_open(const char *path, exr_file **out, error *e);
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/knobs.h"
 #include "gpu/cache.h"
 #include "gpu/choose.h"
 #include "gpu/gpu.h"
@@ -91,13 +92,13 @@ static bool try_display(gpu *g, EGLDisplay display, const char *platform)
     snprintf(g->version, sizeof g->version, "%s", (const char *)glGetString(GL_VERSION));
     snprintf(g->platform, sizeof g->platform, "%s", platform);
     g->software = strstr(g->renderer, "llvmpipe") || strstr(g->renderer, "softpipe") || strstr(g->renderer, "SWR");
-    const char *transfer = getenv("SSDO_TRANSFER");
+    const char *transfer = knob_value("SSDO_TRANSFER");
     g->mapped = transfer ? strcmp(transfer, "mapped") == 0 : !g->software;
     g->band_bytes = GPU_BAND_BYTES;
     g->threads = 1;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &g->max_size);
     query_limits(&g->limits);
-    g->habits = gpu_choose_habits(g->software, &g->limits, getenv("SSDO_READ"), getenv("SSDO_DRAW"));
+    g->habits = gpu_choose_habits(g->software, &g->limits, knob_value("SSDO_READ"), knob_value("SSDO_DRAW"));
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     return true;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/infile.h"
+#include "base/knobs.h"
 #include "base/mem.h"
 #include "gpu/cache.h"
 #include "gpu/diagnose.h"
@@ -49,7 +50,7 @@ static char *read_file(const char *dir, const char *name, error *e)
 
 static const char *source_of(splice *s, const char *name, error *e)
 {
-    const char *dir = getenv("SSDO_SHADER_DIR");
+    const char *dir = knob_value("SSDO_SHADER_DIR");
     if (dir && *dir) return s->loaded[s->file_count] = read_file(dir, name, e);
     for (const shader_source *p = shader_sources; p->name; p++)
         if (strcmp(p->name, name) == 0) return p->text;

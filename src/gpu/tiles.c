@@ -1,6 +1,7 @@
 #include <stdlib.h>
 
 #include "../shaders/include/constants.glsl"
+#include "base/knobs.h"
 #include "base/mem.h"
 #include "gpu/gpu.h"
 
@@ -16,7 +17,7 @@ static int hardware_size(int samples)
 
 int gpu_tile_size(const gpu *g, int samples)
 {
-    const char *s = getenv("SSDO_TILE");
+    const char *s = knob_value("SSDO_TILE");
     int size = s ? atoi(s) : 0;
     if (size > 0 && size <= 65536) return size;
     return g->software ? GPU_TILE : hardware_size(samples);

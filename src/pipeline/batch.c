@@ -122,11 +122,14 @@ static void read_slot(batch *b, slot *s, int frame)
         err_set(&s->error, ERR_USAGE, NULL, NULL, "the path of frame %d is too long", frame);
         return;
     }
-    const char *why = resume_skips(b->j, s->inputs.list, s->inputs.count, s->output);
+    frame_record record;
+    if (!record_make(b->j, frame, &record, &s->error)) return;
+    const char *why = resume_skips(b->j, frame, s->inputs.list, s->inputs.count, s->output, &record);
     if (why)
         skip(s, why);
     else if (frame_read_files(b->j, s->inputs.list, s->inputs.count, &s->result, &s->error) && prepare(b, s))
         step(b, s);
+    s->result.record = record;
 }
 
 static void count_busy(batch *b, shot_thread who, stopwatch *since)

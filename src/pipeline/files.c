@@ -10,6 +10,7 @@
 #include "base/digest.h"
 #include "base/mem.h"
 #include "cli/frames.h"
+#include "exr/file.h"
 #include "gbuffer/mesh.h"
 #include "pipeline/batch.h"
 #include "plugin/colour.h"
@@ -35,31 +36,49 @@ static bool add_materials(const options *o, run_files *f, error *e)
     if (!o->mesh || !mesh_list_libraries(o->mesh, &f->owned, &f->owned_count, &ignored))
         return ignored.code != ERR_MEMORY || err_set(e, ERR_MEMORY, o->mesh, NULL, "%s", ignored.message);
     for (int i = 0; i < f->owned_count; i++)
-        if (!add(f, (run_file){.what = "a material file of --mesh", .path = f->owned[i], .decides = true}, e)) return false;
+        if (!add(f, (run_file){.what = "a material file of --mesh", .path = f->owned[i], .decides = true, .once = true}, e))
+            return false;
     return true;
 }
 
 bool run_files_list(const options *o, run_files *out, error *e)
 {
-    bool many = batch_is(o);
+    bool many = batch_is(o), converts = o->env_colorspace || o->albedo_colorspace;
+    const run_file others[] = {
+        {.what = "--env", .path = o->env, .decides = true, .once = true},
+        {.what = "--camera", .path = o->camera_file, .decides = true},
+        {.what = "--proxies", .path = o->proxies, .decides = true, .framed = proxies_are_framed(o)},
+        {.what = "--mesh", .path = o->mesh, .decides = true, .once = true},
+        {.what = "the OpenColorIO config",
+         .path = colour_config(o->ocio),
+         .kind = FILE_COLOURS,
+         .decides = converts,
+         .once = true},
+        {.what = "the output", .path = o->output, .kind = FILE_OUTPUT, .framed = many},
+        {.what = "the preview", .path = o->preview, .kind = FILE_PREVIEW, .framed = many, .every = many ? o->preview_every : 1},
+        {.what = "the report", .path = o->report, .kind = FILE_REPORT, .framed = many && o->report && pattern_is(o->report)},
+    };
     *out = (run_files){0};
     bool ok = true;
-    for (int i = 0; ok && i < o->input_count; i++)
-        ok = add(out, (run_file){"the input", o->inputs[i], false, many && pattern_is(o->inputs[i]), true, 1}, e);
-    const run_file others[] = {
-        {"--env", o->env, false, false, true, 1},
-        {"--camera", o->camera_file, false, false, true, 1},
-        {"--proxies", o->proxies, false, proxies_are_framed(o), true, 1},
-        {"--mesh", o->mesh, false, false, true, 1},
-        {"the OpenColorIO config", colour_config(o->ocio), false, false, o->env_colorspace || o->albedo_colorspace, 1},
-        {"the output", o->output, true, many, false, 1},
-        {"the preview", o->preview, true, many, false, many ? o->preview_every : 1},
-        {"the report", o->report, true, many && o->report && pattern_is(o->report), false, 1},
-    };
+    for (int i = 0; ok && i < o->input_count; i++) {
+        const run_file input = {
+            .what = "the input", .path = o->inputs[i], .framed = many && pattern_is(o->inputs[i]), .decides = true};
+        ok = add(out, input, e);
+    }
     for (size_t i = 0; ok && i < sizeof others / sizeof *others; i++) ok = add(out, others[i], e);
     ok = ok && add_materials(o, out, e);
     if (!ok) run_files_free(out);
     return ok;
+}
+
+void run_files_read(run_files *files, bool exact)
+{
+    for (int i = 0; i < files->count; i++) {
+        run_file *f = &files->list[i];
+        if (!f->once) continue;
+        f->content = content_read(f->path, exr_head_bytes(f->path), exact);
+        f->known = true;
+    }
 }
 
 void run_files_free(run_files *files)
@@ -135,6 +154,8 @@ static size_t identify_all(const run_files *files, const int *frames, int frame_
     return n;
 }
 
+static bool is_target(const run_files *files, const identity *id) { return files->list[id->file].kind >= FILE_OUTPUT; }
+
 static bool refuse(const run_files *files, const identity *same, const identity *target, error *e)
 {
     const run_file *written = &files->list[target->file], *other = &files->list[same->file];
@@ -154,8 +175,8 @@ bool run_files_check(const run_files *files, const int *frames, int frame_count,
     qsort(all, n, sizeof *all, by_identity);
     for (size_t first = 0, target = 0, i = 0; i < n; i++) {
         if (compare(&all[first], &all[i]) != 0) first = target = i;
-        if (files->list[all[i].file].target) target = i;
-        if (i == first || !files->list[all[target].file].target || (worst && worst->frame <= all[target].frame)) continue;
+        if (is_target(files, &all[i])) target = i;
+        if (i == first || !is_target(files, &all[target]) || (worst && worst->frame <= all[target].frame)) continue;
         worst = &all[target];
         as = &all[target == i ? first : i];
     }

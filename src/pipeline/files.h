@@ -5,17 +5,23 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/content.h"
 #include "cli/options.h"
 
 enum { FILE_PATH = 4096 };
 
+typedef enum file_kind { FILE_DATA, FILE_COLOURS, FILE_OUTPUT, FILE_PREVIEW, FILE_REPORT } file_kind;
+
 typedef struct run_file {
     const char *what; // as messages call it: "the output", "--env"
     const char *path; // as given: for a framed file, a pattern. Borrowed from the options, or one of `owned`
-    bool target;      // it is written
+    file_kind kind;   // FILE_OUTPUT and what follows it are written
     bool framed;      // it is another file in each frame
     bool decides;     // the pixels of the output depend on its content
+    bool once;        // it is read once for all frames
     int every;        // of frames whose number is a multiple of this
+    bool known;       // `content` is that of the whole run
+    content content;
 } run_file;
 
 typedef struct run_files {
@@ -29,6 +35,9 @@ typedef struct run_files {
 // that cannot be read has no material files here; reading it says why.
 bool run_files_list(const options *o, run_files *out, error *e);
 void run_files_free(run_files *files);
+
+// Looks into the files that are read once for all frames.
+void run_files_read(run_files *files, bool exact);
 
 // The file's path in a frame. False if it has none there, or one that does not fit.
 bool run_file_path(const run_file *file, int frame, char *path, size_t size);

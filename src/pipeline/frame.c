@@ -370,13 +370,15 @@ bool frame_write(const job *j, frame_result *r, const char *output, error *e)
 
 bool frame_run(job *j, const char *input, const char *output, frame_result *r, error *e)
 {
-    return frame_run_files(j, &input, 1, output, r, e);
+    return frame_run_files(j, &input, 1, output, NULL, r, e);
 }
 
-bool frame_run_files(job *j, const char *const *inputs, int count, const char *output, frame_result *r, error *e)
+bool frame_run_files(job *j, const char *const *inputs, int count, const char *output, const frame_record *record,
+                     frame_result *r, error *e)
 {
     *r = (frame_result){0};
     if (!(j->g.context ? frame_read_files(j, inputs, count, r, e) : read_and_open(j, inputs, count, r, e))) return false;
+    if (record) r->record = *record;
     progress_step(j->progress);
     if (job_stopped(j) || !frame_filter(j, r, e)) return false;
     progress_step(j->progress);

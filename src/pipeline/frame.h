@@ -12,6 +12,7 @@
 #include "passes/trace.h"
 #include "pipeline/files.h"
 #include "pipeline/plan.h"
+#include "pipeline/record.h"
 
 // What lives for all frames of a run: options, context, environment.
 typedef struct job {
@@ -47,9 +48,10 @@ typedef struct frame_result {
     int timing_count;
     pass_upload uploads[PASS_MAX_UPLOADS];
     int upload_count;
-    int frame;         // of a sequence; for --proxies
-    proxy_set proxies; // --proxies
-    plane_set planes;  // that stood in for what the camera does not see; none where the method has no use for them
+    int frame;           // of a sequence; for --proxies
+    frame_record record; // the caller's to set between reading and writing
+    proxy_set proxies;   // --proxies
+    plane_set planes;    // that stood in for what the camera does not see; none where the method has no use for them
     int tile_size, tiles, tiles_occupied; // tiles without a surface are not dispatched (but for the composite of a background)
     int rounds, tiles_above;              // of --error; 0 rounds: the number of samples was given
     double mean_samples;                  // a pixel, of those rounds
@@ -102,7 +104,9 @@ bool frame_write(const job *j, frame_result *result, const char *output, error *
 
 // All three.
 bool frame_run(job *j, const char *input, const char *output, frame_result *result, error *e);
-bool frame_run_files(job *j, const char *const *inputs, int count, const char *output, frame_result *result, error *e);
+// record: NULL for none.
+bool frame_run_files(job *j, const char *const *inputs, int count, const char *output, const frame_record *record,
+                     frame_result *result, error *e);
 void frame_free(frame_result *result);
 
 // The depth in the middle of the surfaces, 1 where there are none: where a length in pixels and one in the scene are compared.

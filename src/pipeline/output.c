@@ -19,7 +19,8 @@ typedef struct assembly {
     int our_count;
     exr_out_attr attrs[MAX_ATTRS];
     int attr_count;
-    char args[1024], camera[512], environment[600];
+    char *args; // owned
+    char camera[512], environment[600];
     char part_name[64], camera_name[64];
 } assembly;
 
@@ -31,7 +32,9 @@ typedef struct book {
     int part_count;
     exr_source *sources; // of attributes, of a merged part; as many as the file has parts for each view
     int source_count;
-    exr_out_part *shared; // of views that names tell: the part that has the first one's layers, and so the others'
+    char record[RECORD_TEXT + 1]; // "" for none
+    exr_out_attr first_record;    // of the file's first part, where that is not one of ours
+    exr_out_part *shared;         // of views that names tell: the part that has the first one's layers, and so the others'
 } book;
 
 // What a name in a file of ours depends on.
@@ -164,12 +167,13 @@ static const char *base_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-static void add_attributes(assembly *a, const job *j, const frame_result *r)
+static bool add_attributes(assembly *a, const job *j, const frame_result *r, error *e)
 {
     static const char *sources[] = {"option", "fit", "header", "plane"};
     const camera *c = &r->gb.camera;
     add_attr(a, "ssdo/version", EXR_OUT_STRING)->string = SSDO_VERSION;
-    options_record(j->o, a->args, sizeof a->args);
+    a->args = options_record(j->o, e);
+    if (!a->args) return false;
     add_attr(a, "ssdo/args", EXR_OUT_STRING)->string = a->args;
     snprintf(a->camera, sizeof a->camera, "%s focal %.9g %.9g centre %.9g %.9g source %s",
              c->kind == CAMERA_ORTHOGRAPHIC ? "orthographic" : "perspective", c->fx, c->fy, c->cx, c->cy, sources[c->source]);
@@ -188,6 +192,7 @@ static void add_attributes(assembly *a, const job *j, const frame_result *r)
     if (exr_attr_chromaticities(r->file, r->resolution.main_part, primaries.xy)) a->attrs[a->attr_count++] = primaries;
     add_attr(a, "ssdo/premult", EXR_OUT_STRING)->string =
         "composite: premultiplied; occlusion, visibility: ratios; radiance, indirect: per unit coverage";
+    return true;
 }
 
 // Made anew, for the view or (where names tell views) any that comes after it in the list.
@@ -421,7 +426,7 @@ static bool keep_others(book *k, const job *j, const frame_result *first, error 
     return true;
 }
 
-static bool add_view(book *k, const job *j, frame_result *r, error *e)
+static bool add_view(book *k, const job *j, frame_result *r, bool recorded, error *e)
 {
     assembly *a = k->views[k->view_count] = mem_zero(1, sizeof *a, e);
     if (!a) return false;
@@ -429,7 +434,8 @@ static bool add_view(book *k, const job *j, frame_result *r, error *e)
     add_layers(a, j, r);
     const naming n = naming_of(j, r);
     if (j->o->main_composite) add_main(a, &n);
-    add_attributes(a, j, r);
+    if (!add_attributes(a, j, r, e)) return false;
+    if (recorded) add_attr(a, RECORD_NAME, EXR_OUT_STRING)->string = k->record;
     if (k->shared && view_in_names(r->file, r->view)) {
         append_view(k, a, r);
         return true;
@@ -440,10 +446,24 @@ static bool add_view(book *k, const job *j, frame_result *r, error *e)
 
 static void free_book(book *k)
 {
-    for (int v = 0; v < k->view_count; v++) free(k->views[v]);
+    for (int v = 0; v < k->view_count; v++) {
+        free(k->views[v]->args);
+        free(k->views[v]);
+    }
     for (int i = 0; i < k->part_count; i++) free(k->parts[i].channels);
     free(k->parts);
     free(k->sources);
+}
+
+// In every part of ours and in the first part, where a stale one may lie.
+static void put_record(book *k, const frame_result *r)
+{
+    if (!r->record.made) return;
+    record_format(&r->record, record_layout(k->parts, k->part_count), k->record);
+    if (k->parts[0].attribute_count) return;
+    k->first_record = (exr_out_attr){.name = RECORD_NAME, .kind = EXR_OUT_STRING, .string = k->record};
+    k->parts[0].attributes = &k->first_record;
+    k->parts[0].attribute_count = 1;
 }
 
 typedef struct inspection {
@@ -465,8 +485,9 @@ bool output_write(const job *j, frame_result *r, const char *path, error *e)
     bool ok = k.sources != NULL;
     bool others_first = !is_filtered(&r->file->parts[0], r) && !r->file->parts[0].deep; // the default view stays the first
     if (ok && others_first) ok = keep_others(&k, j, r, e);
-    for (frame_result *v = r; ok && v; v = v->next_view) ok = add_view(&k, j, v, e);
+    for (frame_result *v = r; ok && v; v = v->next_view) ok = add_view(&k, j, v, r->record.made, e);
     if (ok && !others_first) ok = keep_others(&k, j, r, e);
+    if (ok) put_record(&k, r);
     const inspection look = {j, r, path};
     const exr_inspector inspector = {look_again, &look};
     ok = ok && exr_write_inspected(path, k.parts, k.part_count, j->threads, j->o->verify ? &inspector : NULL, e);

@@ -217,7 +217,9 @@ bool preview_write(const options *o, const frame_result *r, const char *path, er
         cell++;
     }
     draw_legend(&s, o, r, below, columns * (z.width + GAP) - GAP, &z);
-    ok = ok && images_write_png(path, s.width, s.height, s.rgb, "Software", "ssdo-filter", e);
+    char record[DIGEST_TEXT + 1] = "none";
+    if (r->record.made) digest_format(r->record.preview, record);
+    ok = ok && images_write_png(path, s.width, s.height, s.rgb, RECORD_NAME, record, e);
     sheet_free(&s);
     return ok;
 }

@@ -13,6 +13,7 @@
 //
 // With an OpenColorIO config (--ocio, $OCIO) light goes through its display and view (--display, --view) instead; without one,
 // light in the primaries of a chromaticities attribute is brought to sRGB's.
+// The file carries the record of the frame, if it has one.
 bool preview_write(const options *o, const frame_result *r, const char *path, error *e);
 
 // Whether the module that writes a PNG and the display and view that previews would go through are there, to be asked before any

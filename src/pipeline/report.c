@@ -186,7 +186,10 @@ static json_object *report_of(const job *j, const frame_result *r, const char *o
     json_object *o = json_object_new_object(), *evidence = json_object_new_array(), *layers = json_object_new_array(),
                 *warnings = json_object_new_array(), *inputs = json_object_new_array();
     double pixels = (double)r->gb.width * r->gb.height;
+    char record[DIGEST_TEXT + 1];
+    if (r->record.made) digest_format(r->record.sampled, record);
     json_put_text(o, "version", SSDO_VERSION);
+    json_put_text(o, "digest", r->record.made ? record : NULL); // by which --skip-existing knows it
     json_put_text(o, "input", r->file->path);
     for (int i = 0; i < r->file->member_count; i++) json_object_array_add(inputs, json_text(r->file->members[i]->path));
     json_put(o, "inputs", inputs); // where the frame's passes are in several files

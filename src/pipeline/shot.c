@@ -1,5 +1,7 @@
 #include "pipeline/shot.h"
 
+#include <stdlib.h>
+
 #include "pipeline/json.h"
 #include "pipeline/report.h"
 
@@ -64,13 +66,14 @@ static json_object *busy_of(const shot_report *s)
 
 bool shot_write(shot_report *s, const job *j, const frame_list *failures, const char *path, error *e)
 {
+    char failed[512], *args = options_record(j->o, e);
+    if (!args) return false;
     json_object *o = json_object_new_object(), *times = json_object_new_array(), *warnings = json_object_new_array();
-    char args[1024], failed[512];
-    options_record(j->o, args, sizeof args);
     frames_format(failures, failed, sizeof failed);
     json_put_text(o, "version", SSDO_VERSION);
     json_put_text(o, "device", j->g.renderer);
     json_put_text(o, "args", args);
+    free(args);
     if (j->shot_radius > 0.0) json_put_number(o, "radius", j->shot_radius);
     json_put(o, "done", json_object_new_int(s->done));
     json_put(o, "skipped", json_object_new_int(s->skipped));

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/knobs.h"
 #include "base/mem.h"
 
 #ifndef SSDO_LIBDIR
@@ -31,7 +32,7 @@ static void list_places(places *p)
 {
     char exe[PATH_MAX];
     p->count = 0;
-    const char *chosen = getenv("SSDO_PLUGIN_DIR");
+    const char *chosen = knob_value("SSDO_PLUGIN_DIR");
     if (chosen && chosen[0]) add_place(p, chosen, "");
     ssize_t n = readlink("/proc/self/exe", exe, sizeof exe - 1);
     if (n > 0) {

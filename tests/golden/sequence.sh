@@ -46,7 +46,7 @@ head -c 30000 "$dir/a/f.0001.exr" >"$dir/c/f.0001.exr"
 cmp "$dir/a/f.0001.exr" "$dir/c/f.0001.exr" || die "a truncated output was kept"
 
 # An input that was rendered again is filtered again; a single frame knows --skip-existing and --missing, too.
-touch "$dir/in/f.0002.exr"
+oiiotool "$dir/in/f.0002.exr" --mulc 1.0625 -o "$dir/in/f.0002.exr" || die oiiotool
 "$SSDO" "$dir/in/f.####.exr" -o "$dir/c/f.####.exr" --skip-existing --frames 1-2 >"$dir/log" 2>/dev/null || die "a newer input"
 [ "$(grep skipped "$dir/log")" = "frame 1 (1 of 2): skipped, already done" ] || die "a newer input: $(cat "$dir/log")"
 "$SSDO" -q "$dir/in/f.0001.exr" -o "$dir/one.exr" --samples 4 || die "one frame"

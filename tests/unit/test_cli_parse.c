@@ -117,10 +117,12 @@ static void presets_are_defaults(void **state)
     assert_string_equal(o.method, "ssdo");
     assert_true(o.radius_unit == RADIUS_AUTO && o.scale == 1.0 && o.contrast == 3.0);
     assert_int_equal(o.input_count, good("").input_count);
-    char record[256];
-    assert_true(options_record(&o, record, sizeof record)); // what counts is recorded, not the preset
+    error e = {0};
+    char *record = options_record(&o, &e);
+    assert_non_null(record); // what counts is recorded, not the preset
     assert_null(strstr(record, "preset"));
     assert_non_null(strstr(record, "--contrast 3"));
+    free(record);
 }
 
 static void radius_in_three_forms(void **state)

@@ -53,6 +53,21 @@ static options parse(char *line)
     return o;
 }
 
+static void assert_options_record(const options *o, const char *wanted)
+{
+    error e = {0};
+    char *record = options_record(o, &e);
+    assert_non_null(record);
+    assert_string_equal(record, wanted);
+    free(record);
+}
+
+static void assert_record(char *line, const char *wanted)
+{
+    options o = parse(line);
+    assert_options_record(&o, wanted);
+}
+
 static const char *const everything =
     "--layers occlusion,bent --main composite --float --method alchemy --radius 0.1 --quality high --samples 100 --error "
     "0.015625 --thickness inf "
@@ -75,18 +90,21 @@ static const char *const everything =
 static void everything_survives_the_round_trip(void **state)
 {
     (void)state;
-    char line[2048], first[2048], again[2300], second[2048];
+    char line[2048], again[2300], *first, *second;
+    error e = {0};
     snprintf(line, sizeof line, "in.exr -o out.exr %s", everything);
     options o = parse(line);
-    assert_true(options_record(&o, first, sizeof first));
+    assert_non_null(first = options_record(&o, &e));
     assert_string_equal(first, everything);
     snprintf(again, sizeof again, "in.exr -o out.exr %s", first);
     options back = parse(again);
-    assert_true(options_record(&back, second, sizeof second));
+    assert_non_null(second = options_record(&back, &e));
     assert_string_equal(second, first);
     assert_true(back.contrast == o.contrast && back.bounce_strength == 1e-15 && back.radius == 0.1);
     assert_string_equal(back.role_names[1], "it's N");
     assert_string_equal(back.view_layer, "A \"B\" $C");
+    free(first);
+    free(second);
 }
 
 // Every row that changes pixels appears above, so that a new row cannot be forgotten.
@@ -104,28 +122,41 @@ static void the_round_trip_covers_every_row(void **state)
 static void what_changes_no_pixel_is_left_out(void **state)
 {
     (void)state;
-    char buf[512];
     char line[] =
         "/show/in.exr -o /show/out.exr --threads 3 --device 1 --preview /p.png --report /r.json -v --camera /c.json --keep none "
         "--compression piz --prefix x --env /show/maps/sky.exr --radius auto --amount 1 --mode radiance --scale 1.0";
-    options o = parse(line);
-    assert_true(options_record(&o, buf, sizeof buf));
-    assert_string_equal(buf, "--env sky.exr");
+    assert_record(line, "--env sky.exr");
     char plain[] = "in.exr -o out.exr";
-    o = parse(plain);
-    assert_true(options_record(&o, buf, sizeof buf));
-    assert_string_equal(buf, "");
+    assert_record(plain, "");
 }
 
-static void a_small_buffer_is_noticed(void **state)
+// Of any length, to its end: a prefix of a record would be that of other settings.
+static void a_long_record_is_whole(void **state)
 {
     (void)state;
-    char line[] = "in.exr -o out.exr --samples 100", buf[32];
-    options o = parse(line);
-    assert_true(options_record(&o, buf, 14)); // "--samples 100" and its end
-    assert_string_equal(buf, "--samples 100");
-    assert_false(options_record(&o, buf, 13));
-    assert_false(options_record(&o, buf, 0));
+    enum { LONG = 100000 };
+    char *line = calloc(1, LONG + 64), *wanted = calloc(1, LONG + 64);
+    int n = sprintf(line, "in.exr -o out.exr --position ");
+    memset(line + n, 'p', LONG);
+    sprintf(line + n + LONG, " --samples 9");
+    sprintf(wanted, "--samples 9 %s", line + n - 11);
+    wanted[strlen(wanted) - 12] = '\0';
+    assert_record(line, wanted);
+    free(line);
+    free(wanted);
+}
+
+static void variables_that_change_pixels_are_named(void **state)
+{
+    (void)state;
+    setenv("SSDO_TILE", "48", 1);
+    setenv("SSDO_SHADER_DIR", "/home/me/my shaders", 1);
+    setenv("SSDO_MEMORY", "1000000000", 1);
+    char line[] = "in.exr -o out.exr --samples 9";
+    assert_record(line, "SSDO_SHADER_DIR='my shaders' SSDO_TILE=48 --samples 9");
+    unsetenv("SSDO_TILE");
+    unsetenv("SSDO_SHADER_DIR");
+    unsetenv("SSDO_MEMORY");
 }
 
 // A locale with a decimal comma: an installed one, or one made on the spot by localedef (the build machines have only C).
@@ -154,11 +185,10 @@ static void a_decimal_comma_changes_nothing(void **state)
     char sign[16];
     snprintf(sign, sizeof sign, "%.1f", 0.5);
     assert_string_equal(sign, "0,5"); // else the rest would prove nothing
-    char line[] = "in.exr -o out.exr --radius 0.25 --scale=1.5 --env-rotate -1234567.5", buf[128];
+    char line[] = "in.exr -o out.exr --radius 0.25 --scale=1.5 --env-rotate -1234567.5";
     options o = parse(line);
     assert_true(o.radius == 0.25 && o.scale == 1.5 && o.env_rotate == -1234567.5);
-    assert_true(options_record(&o, buf, sizeof buf));
-    assert_string_equal(buf, "--radius 0.25 --scale 1.5 --env-rotate -1234567.5");
+    assert_options_record(&o, "--radius 0.25 --scale 1.5 --env-rotate -1234567.5");
     snprintf(sign, sizeof sign, "%.1f", 0.5);
     assert_string_equal(sign, "0,5"); // the caller's locale is left as it was
     setlocale(LC_ALL, "C");
@@ -167,9 +197,9 @@ static void a_decimal_comma_changes_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(everything_survives_the_round_trip), cmocka_unit_test(the_round_trip_covers_every_row),
-        cmocka_unit_test(what_changes_no_pixel_is_left_out),  cmocka_unit_test(a_small_buffer_is_noticed),
-        cmocka_unit_test(a_decimal_comma_changes_nothing),
+        cmocka_unit_test(everything_survives_the_round_trip),     cmocka_unit_test(the_round_trip_covers_every_row),
+        cmocka_unit_test(what_changes_no_pixel_is_left_out),      cmocka_unit_test(a_long_record_is_whole),
+        cmocka_unit_test(variables_that_change_pixels_are_named), cmocka_unit_test(a_decimal_comma_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

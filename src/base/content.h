@@ -1,0 +1,23 @@
+// What a file holds, as digests.
+//
+// Of a file of up to CONTENT_WHOLE bytes every byte counts. Of a larger one `sampled` takes in its length, its first bytes and
+// CONTENT_BLOCKS blocks, evenly spread up to its end: it misses a change that keeps the length and touches none of these.
+#ifndef SSDO_BASE_CONTENT_H
+#define SSDO_BASE_CONTENT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/digest.h"
+
+enum { CONTENT_WHOLE = 1 << 22, CONTENT_BLOCKS = 64, CONTENT_BLOCK = 4096 };
+
+typedef struct content {
+    digest sampled, exact; // exact: zero unless asked for
+} content;
+
+// head: so many first bytes count in any case. A file that cannot be read, or is not a regular one, has zeroes; it is not waited
+// for.
+content content_read(const char *path, uint64_t head, bool exact);
+
+#endif
