@@ -2,10 +2,12 @@
 
 #include <epoxy/gl.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include "base/mem.h"
@@ -42,6 +44,15 @@ static void make_key(const gpu *g, const char *source, uint64_t key[2])
 
 static bool make_folder(const char *path) { return mkdir(path, 0700) == 0 || errno == EEXIST; }
 
+// A folder that another user owns, or may write into, may hold anything.
+static bool make_own_folder(const char *path)
+{
+    struct stat st;
+    if (!make_folder(path) || stat(path, &st) != 0 || !S_ISDIR(st.st_mode)) return false;
+    if (st.st_uid != geteuid() || (st.st_mode & 022)) return false;
+    return (st.st_mode & 077) == 0 || chmod(path, 0700) == 0;
+}
+
 bool cache_folder(char *path, size_t size)
 {
     const char *base = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
@@ -54,7 +65,7 @@ bool cache_folder(char *path, size_t size)
         return false;
     if (n < 0 || (size_t)n + sizeof "/ssdo-filter" > size || !make_folder(path)) return false;
     strcat(path, "/ssdo-filter");
-    return make_folder(path);
+    return make_own_folder(path);
 }
 
 static bool entry_path(const uint64_t key[2], char path[PATH])
@@ -146,10 +157,46 @@ void cache_store(const gpu *g, const char *source, GLuint program)
     free(bytes);
 }
 
+// llvmpipe makes other code for other values of these, and Mesa's own keys do not hold them.
+static uint64_t driver_settings(void)
+{
+    static const char *const names[] = {"LP_NATIVE_VECTOR_WIDTH", "LP_PERF", "LP_DEBUG", "GALLIVM_PERF", "GALLIVM_DEBUG"};
+    uint64_t h = 0xcbf29ce484222325u;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const char *value = getenv(names[i]);
+        h = fnv(h, value ? value : "", value ? strlen(value) + 1 : 0);
+        h = fnv(h, "\n", 1);
+    }
+    return h;
+}
+
+// Mesa maps a sparse index and writes into it: on a full disk that ends the process with SIGBUS. So the index gets all its room
+// before Mesa opens it; Mesa cuts it to the size it wants.
+static bool make_room(const char *folder)
+{
+    enum { INDEX = 4 << 20, SPARE = 64 << 20 };
+    char path[PATH + 64];
+    struct stat st;
+    struct statvfs disk;
+    if (statvfs(folder, &disk) != 0 || (uint64_t)disk.f_bavail * disk.f_frsize < SPARE) return false;
+    snprintf(path, sizeof path, "%s/mesa_shader_cache", folder);
+    if (!make_own_folder(path)) return false;
+    strcat(path, "/index");
+    int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0600);
+    if (fd < 0) return false;
+    bool ok = fstat(fd, &st) == 0 && S_ISREG(st.st_mode);
+    if (ok) ok = posix_fallocate(fd, 0, st.st_size > 0 ? st.st_size : INDEX) == 0;
+    return close(fd) == 0 && ok;
+}
+
 void cache_point_mesa(void)
 {
     char path[PATH];
-    if (getenv("MESA_SHADER_CACHE_DIR") || !cache_folder(path, sizeof path - 8)) return;
-    strcat(path, "/mesa");
-    if (make_folder(path)) setenv("MESA_SHADER_CACHE_DIR", path, 0);
+    if (getenv("MESA_SHADER_CACHE_DIR") || getenv("MESA_SHADER_CACHE_DISABLE")) return;
+    bool ok = cache_folder(path, sizeof path - 24);
+    if (ok) sprintf(path + strlen(path), "/mesa-%016llx", (unsigned long long)driver_settings());
+    if (ok && make_own_folder(path) && make_room(path))
+        setenv("MESA_SHADER_CACHE_DIR", path, 0);
+    else
+        setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
 }

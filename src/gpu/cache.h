@@ -18,7 +18,8 @@ bool cache_load(const gpu *g, const char *source, GLuint program);
 // Keeps a linked program (linked with GL_PROGRAM_BINARY_RETRIEVABLE_HINT).
 void cache_store(const gpu *g, const char *source, GLuint program);
 
-// Before EGL starts: Mesa's cache of machine code goes into our folder too, unless the user has said where.
+// Before EGL starts: Mesa's cache of machine code goes into our folder too, unless the user has said where; it is switched off
+// where that folder is not ours alone or its disk is nearly full, because Mesa would be ended by SIGBUS there.
 void cache_point_mesa(void);
 
 #endif
