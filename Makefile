@@ -64,7 +64,8 @@ all: $(BIN) $(PLUGIN)
 
 help:
 	@echo 'make demo     install what is missing, build, filter a sample, make a contact sheet'
-	@echo 'make check    install what is missing, build, run all tests'
+	@echo 'make check    install what is missing, build, run all tests (make check T=arc: those whose name holds arc)'
+	@echo 'make check-fast    the build without a warning and the tests that take a moment'
 	@echo 'make check-farm    a sequence by Slurm, Open Job Description and GNU parallel against one command'
 	@echo 'make check-hosts   our output in Blender, oiiotool, exrmultipart and ImageMagick'
 	@echo 'make check-hard    the hard cases, all of them; check-threads: the batch under the thread sanitizer'
@@ -74,7 +75,7 @@ help:
 	@echo 'make bench-error   --error: its estimate, and its time beside fixed budgets'
 	@echo 'make bench-paper   cost of ssdo'\''s light and bounce beside the paper, of s3ho beside hemisphere'
 	@echo 'make bench-sampling   error by the sequence that slices, steps and sectors draw from, and by the spacing of steps'
-	@echo 'make bench-frame   cost of a whole frame beside copying its file (bench-frame-readme: into README.md)'
+	@echo 'make bench-frame   cost of a whole frame beside copying its file (bench-frame-readme: into tests/bench/RESULTS.md)'
 	@echo 'make all | lint | format | install PREFIX= DESTDIR= | uninstall | clean'
 
 $(BIN): $(BUILD)/src/main.o $(BUILD)/libssdo.a
@@ -143,6 +144,13 @@ demo: deps
 check: deps-check
 	@$(MAKE) $(JOBS) --no-print-directory all lint unit
 	@sh tests/run.sh $(BUILD) $(UNIT) $(HARD)
+
+# The build without a warning and the unit tests that take a moment: tests/fast.txt.
+FAST     := $(addprefix $(BUILD)/tests/,$(shell grep -v '^\#' tests/fast.txt))
+.PHONY: check-fast
+check-fast: deps-check
+	@$(MAKE) $(JOBS) --no-print-directory EXTRA_CFLAGS=-Werror all $(FAST)
+	@SSDO_SCRIPTS= sh tests/run.sh $(BUILD) $(FAST)
 
 # The hard cases, all of them (tests/hard): `make check` runs a subset.
 .PHONY: unit hard check-hard
@@ -239,7 +247,7 @@ bench-error: deps-bench
 	@$(BUILD)/bench-error $(SAMPLES) | tee $(BUILD)/bench/error.md
 .PHONY: bench-error-readme
 bench-error-readme:
-	@sh tests/bench/paste.sh $(BUILD)/bench/error.md bench-error README.md
+	@sh tests/bench/paste.sh $(BUILD)/bench/error.md bench-error tests/bench/RESULTS.md
 .PHONY: bench-paper
 bench-paper: deps-bench
 	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench-paper
@@ -264,7 +272,7 @@ $(BENCH_CACHE)/unseen/%/rendered:
 	blender -b --factory-startup -P samples/render.py -- --all --out $(@D) --variant $* --size 480x270 --spp $(UNSEEN_SPP) >$(@D)/log
 	@touch $@
 
-# The tables and the plot of the last bench and bench-unseen, pasted into README.md.
+# The tables and the plot of the last bench and bench-unseen, pasted into tests/bench/RESULTS.md.
 bench-readme: ; @sh tests/bench/readme.sh $(BUILD)
 
 # Renders the truth of SCENE again with the committed script and compares: TRUTH_SPP=384 gives the committed pixels, fewer are faster.
@@ -283,10 +291,10 @@ bench-frame: deps-bench
 	    $(BUILD)/tests/bench/own_copy $(BUILD)/bench-curve
 	@sh tests/bench/frame.sh $(BUILD) $(ROUNDS)
 
-# Puts the last bench-frame's tables into README.md, between the marks.
+# Puts the last bench-frame's tables into tests/bench/RESULTS.md, between the marks.
 .PHONY: bench-frame-readme
 bench-frame-readme:
-	@sh tests/bench/paste.sh $(BUILD)/bench/frame.md bench-frame README.md
+	@sh tests/bench/paste.sh $(BUILD)/bench/frame.md bench-frame tests/bench/RESULTS.md
 $(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(TESTLIB) $(BUILD)/libssdo.a
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# readme.sh KIND: the shell commands of README.md whose fence says ```sh KIND, or with KIND empty those whose fence says ```sh alone,
+# readme.sh KIND: the shell commands of README.md and of the pages it sends to, in the order of reading, whose fence says ```sh KIND, or with KIND empty those whose fence says ```sh alone,
 # each with what the README says it prints: the lines of the ```text fence after it come out with "#=> " in front.
 awk -v kind="$1" '
     /^```/ && inside { inside = 0; next }
@@ -8,4 +8,4 @@ awk -v kind="$1" '
     /^```/ { inside = "other"; next }
     inside == "sh" { print }
     inside == "text" { print "#=> " $0 }
-' README.md
+' ${README:-README.md src/gbuffer/README.md samples/farm/README.md src/passes/README.md}

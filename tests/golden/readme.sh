@@ -1,5 +1,5 @@
 #!/bin/sh
-# The README's commands, as typed, from a folder that looks like a clone: each succeeds and prints what the README says, and the
+# The commands of README.md and of the pages it sends to, as typed, from a folder that looks like a clone: each succeeds and prints what the README says, and the
 # files that it names are there. Fences marked ```sh KIND are others' (tests/readme.sh): farm commands are make check-farm's, slow ones
 # nobody's.
 set -u
