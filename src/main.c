@@ -36,8 +36,13 @@ static void list_devices(void)
 {
     gpu_device list[32];
     int n = gpu_list_devices(list, 32);
-    for (int i = 0; i < n; i++) printf("%d  %s\n", i, list[i].description);
-    if (gpu_missing_device()) printf("note: %s\n", gpu_missing_device());
+    bool hardware = false;
+    for (int i = 0; i < n; i++) {
+        printf("%d  %s\n", i, list[i].description);
+        hardware |= list[i].usable && !list[i].software;
+    }
+    const char *why = hardware ? gpu_missing_device() : gpu_missing_hardware();
+    if (why) printf("note: %s\n", why);
     if (n == 0) puts("no EGL devices; the surfaceless platform may still work");
 }
 

@@ -91,7 +91,7 @@ typedef struct options {
     int preview_every;          // sequences: frames whose number is a multiple of it have a preview
     progress_form progress;
     int device; // -1 = first usable
-    bool list_devices;
+    bool list_devices, require_gpu, gpu_debug;
     int threads;                // 0 = default
     bool explain, explain_json; // --explain, --explain=json
     bool strict, verify;

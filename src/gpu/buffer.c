@@ -12,6 +12,7 @@ bool gpu_buffer_make(gpu *g, gpu_buffer *buffer, const void *data, size_t size, 
     glNamedBufferData(buffer->id, (GLsizeiptr)(size ? size : 4), data, GL_DYNAMIC_DRAW);
     if (data) g->counts.uploads++, g->counts.bytes_up += (long long)size;
     GLenum code = glGetError();
+    if (code == GL_NO_ERROR) gpu_label(g, GL_BUFFER, buffer->id, what);
     if (code == GL_NO_ERROR) return true;
     gpu_buffer_free(buffer);
     return err_set(e, code == GL_OUT_OF_MEMORY ? ERR_MEMORY : ERR_GL, NULL, NULL,

@@ -81,26 +81,73 @@ static bool exists(const char *root, const char *path)
     return access(full, F_OK) == 0;
 }
 
-static bool names_nvidia(const char *root, const char *folder)
+// Counts the folder's entries whose names hold `part`, and those of them that can be opened for reading and writing.
+static int count_entries(const char *root, const char *folder, const char *part, int *open)
 {
     char full[PATH_MAX];
+    int found = 0;
+    *open = 0;
     snprintf(full, sizeof full, "%s%s", root, folder);
     DIR *d = opendir(full);
-    bool found = false;
-    for (struct dirent *entry; d && !found && (entry = readdir(d));) found = strstr(entry->d_name, "nvidia") != NULL;
+    for (struct dirent *entry; d && (entry = readdir(d));) {
+        if (!strstr(entry->d_name, part)) continue;
+        found++;
+        *open += faccessat(dirfd(d), entry->d_name, R_OK | W_OK, 0) == 0;
+    }
     if (d) closedir(d);
     return found;
 }
 
+static bool names_nvidia(const char *root, const char *folder)
+{
+    int open;
+    return count_entries(root, folder, "nvidia", &open) > 0;
+}
+
+static bool denied(const char *root, const char *path)
+{
+    char full[PATH_MAX];
+    snprintf(full, sizeof full, "%s%s", root, path);
+    return exists(root, path) && access(full, R_OK | W_OK) != 0;
+}
+
 gpu_surroundings gpu_look_around(const char *root)
 {
-    gpu_surroundings s = {.node = exists(root, "/dev/nvidia0") || exists(root, "/dev/nvidiactl")};
+    int open;
+    gpu_surroundings s = {.node = exists(root, "/dev/nvidia0") || exists(root, "/dev/nvidiactl"),
+                          .node_denied = denied(root, "/dev/nvidia0") || denied(root, "/dev/nvidiactl"),
+                          .module = exists(root, "/sys/module/nvidia")};
+    s.render = count_entries(root, "/dev/dri", "renderD", &open) > 0;
+    s.render_denied = s.render && open == 0;
+    s.card = count_entries(root, "/sys/class/drm", "renderD", &open) > 0;
     if (!s.node) return s;
     s.vendor = names_nvidia(root, "/usr/share/glvnd/egl_vendor.d") || names_nvidia(root, "/etc/glvnd/egl_vendor.d");
     void *library = root[0] ? NULL : dlopen("libEGL_nvidia.so.0", RTLD_LAZY | RTLD_LOCAL);
     s.library = library != NULL;
     if (library) dlclose(library);
     return s;
+}
+
+const char *gpu_why_software(const gpu_surroundings *s)
+{
+    if (s->node_denied)
+        return "there is an NVIDIA GPU, but this user may not open /dev/nvidia0 or /dev/nvidiactl; join the group that owns them";
+    if (gpu_missing_vendor(s)) return gpu_missing_vendor(s);
+    if (!s->node && s->module)
+        return "the kernel has NVIDIA's driver, but there is no /dev/nvidia0; give the container the GPU (docker run --gpus all, "
+               "apptainer --nv), or run nvidia-modprobe";
+    if (s->listed && s->hidden)
+        return "CUDA_VISIBLE_DEVICES hides the NVIDIA GPU, or its driver gives no OpenGL 4.5 core context";
+    if (s->listed) return "the NVIDIA GPU gives no OpenGL 4.5 core context; --list-devices shows the devices";
+    if (s->render_denied)
+        return "there is a GPU, but this user may not open /dev/dri/renderD*; join the group that owns it (Debian: render)";
+    if (s->render)
+        return "there is a GPU in /dev/dri, but no driver gives an OpenGL 4.5 core context on it; install it (Debian: "
+               "libgl1-mesa-dri)";
+    if (s->card)
+        return "the kernel has a GPU, but there is no /dev/dri/renderD*; give the container the GPU (docker run --device "
+               "/dev/dri)";
+    return "there is no GPU: neither /dev/nvidia0 nor /dev/dri/renderD*";
 }
 
 const char *gpu_missing_vendor(const gpu_surroundings *s)

@@ -24,16 +24,25 @@ typedef struct gpu_candidate {
 // leaves out nothing.
 int gpu_choose(const gpu_candidate *list, int count, const char *visible, int *order);
 
-// What is around on a machine whose NVIDIA GPU may be without its GL driver.
+// What is around on a machine whose GPU may be without its GL driver.
 typedef struct gpu_surroundings {
-    bool node;    // the kernel driver is there: /dev/nvidia0 or /dev/nvidiactl
-    bool listed;  // EGL lists a device of NVIDIA
-    bool vendor;  // a file of NVIDIA in glvnd's egl_vendor.d
-    bool library; // libEGL_nvidia.so.0 can be loaded
+    bool node;          // the kernel driver of NVIDIA is there: /dev/nvidia0 or /dev/nvidiactl
+    bool node_denied;   // one of them that is there cannot be opened
+    bool module;        // the kernel has NVIDIA's driver (/sys/module/nvidia), whatever is in /dev
+    bool listed;        // EGL lists a device of NVIDIA
+    bool hidden;        // CUDA_VISIBLE_DEVICES is set
+    bool vendor;        // a file of NVIDIA in glvnd's egl_vendor.d
+    bool library;       // libEGL_nvidia.so.0 can be loaded
+    bool render;        // a render node in /dev/dri
+    bool render_denied; // and none of them can be opened
+    bool card;          // the kernel has a render node (/sys/class/drm), whatever is in /dev
 } gpu_surroundings;
 
-// Looks below `root` ("" for the machine itself, where the library is tried too); `listed` stays false.
+// Looks below `root` ("" for the machine itself, where the library is tried too); `listed` and `hidden` stay false.
 gpu_surroundings gpu_look_around(const char *root);
+
+// The likely reason why no GPU is used, with its remedy; never NULL.
+const char *gpu_why_software(const gpu_surroundings *s);
 
 // The likely reason why there is an NVIDIA GPU that EGL does not list, with its remedy, or NULL if nothing is missing.
 const char *gpu_missing_vendor(const gpu_surroundings *s);

@@ -30,7 +30,7 @@ static const char *client_extensions(void)
 }
 
 // Makes a 4.5 core context current on an initialised display, with reset notification where it is offered.
-static EGLContext make_context(EGLDisplay display, bool *robust)
+static EGLContext make_context(EGLDisplay display, bool debug, bool *robust)
 {
     const char *extensions = eglQueryString(display, EGL_EXTENSIONS);
     if (!has_token(extensions, "EGL_KHR_surfaceless_context") || !has_token(extensions, "EGL_KHR_create_context")) return NULL;
@@ -40,7 +40,9 @@ static EGLContext make_context(EGLDisplay display, bool *robust)
         if (!eglChooseConfig(display, want, &config, 1, &count) || count < 1) return NULL;
     }
     if (!eglBindAPI(EGL_OPENGL_API)) return NULL;
-    EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+    EGLint attributes[] = {EGL_CONTEXT_FLAGS_KHR,
+                           debug ? EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR : 0,
+                           EGL_CONTEXT_MAJOR_VERSION,
                            4,
                            EGL_CONTEXT_MINOR_VERSION,
                            5,
@@ -52,7 +54,7 @@ static EGLContext make_context(EGLDisplay display, bool *robust)
     EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
     *robust = context != EGL_NO_CONTEXT;
     if (context == EGL_NO_CONTEXT) {
-        attributes[6] = EGL_NONE;
+        attributes[8] = EGL_NONE;
         context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
     }
     if (context == EGL_NO_CONTEXT) return NULL;
@@ -79,7 +81,7 @@ static bool try_display(gpu *g, EGLDisplay display, const char *platform)
 {
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, NULL, NULL)) return false;
     bool robust = false;
-    EGLContext context = make_context(display, &robust);
+    EGLContext context = make_context(display, g->debug, &robust);
     if (!context) {
         eglTerminate(display);
         return false;
@@ -139,17 +141,30 @@ static gpu_candidate describe(EGLDeviceEXT device)
     return c;
 }
 
-static const char *missing_among(EGLDeviceEXT *devices, int count)
+static gpu_surroundings surroundings_of(EGLDeviceEXT *devices, int count)
 {
     gpu_surroundings s = gpu_look_around("");
     for (int i = 0; i < count; i++) s.listed |= describe(devices[i]).nvidia;
-    return gpu_missing_vendor(&s);
+    s.hidden = getenv("CUDA_VISIBLE_DEVICES") != NULL;
+    return s;
+}
+
+static gpu_surroundings surroundings(void)
+{
+    EGLDeviceEXT devices[MAX_DEVICES];
+    return surroundings_of(devices, have_egl() ? query_devices(devices) : 0);
 }
 
 const char *gpu_missing_device(void)
 {
-    EGLDeviceEXT devices[MAX_DEVICES];
-    return missing_among(devices, have_egl() ? query_devices(devices) : 0);
+    gpu_surroundings s = surroundings();
+    return gpu_missing_vendor(&s);
+}
+
+const char *gpu_missing_hardware(void)
+{
+    gpu_surroundings s = surroundings();
+    return gpu_why_software(&s);
 }
 
 static bool open_device(gpu *g, EGLDeviceEXT device)
@@ -172,28 +187,55 @@ static bool open_first(gpu *g, EGLDeviceEXT *devices, int count)
 
 void gpu_set_up(void) { cache_point_mesa(); }
 
-bool gpu_open(gpu *g, int device, log_t *log, error *e)
+// A software device: why, and whether that will do.
+static bool accept_software(gpu *g, gpu_request request, const gpu_surroundings *s, error *e)
 {
-    *g = (gpu){.log = log};
+    char named[64];
+    snprintf(named, sizeof named, "--device %d names it", request.device);
+    snprintf(g->why_software, sizeof g->why_software, "%s", request.device >= 0 ? named : gpu_why_software(s));
+    if (!request.hardware) return true;
+    err_set(e, ERR_GL, NULL, NULL, "--require-gpu: only %s is there, which runs on the CPU: %s", g->device, g->why_software);
+    gpu_close(g);
+    return false;
+}
+
+static bool open_requested(gpu *g, gpu_request request, EGLDeviceEXT *devices, int count, const gpu_surroundings *s, error *e)
+{
+    if (request.device >= count)
+        return err_set(e, ERR_GL, NULL, NULL, "there is no device %d; --list-devices shows the %d there are", request.device,
+                       count);
+    if (request.device >= 0)
+        return open_device(g, devices[request.device]) ||
+               err_set(e, ERR_GL, NULL, NULL, "EGL device %d gives no OpenGL 4.5 core context; --list-devices shows which do",
+                       request.device);
+    const char *missing = gpu_missing_vendor(s);
+    return open_first(g, devices, count) ||
+           err_set(e, ERR_GL, NULL, NULL, "no EGL device or surfaceless platform gives an OpenGL 4.5 core context; %s",
+                   missing ? missing : "install a driver (Debian: libegl-mesa0 libgl1-mesa-dri) and see --list-devices");
+}
+
+bool gpu_open_as(gpu *g, gpu_request request, log_t *log, error *e)
+{
+    *g = (gpu){.log = log, .debug = request.debug};
     gpu_set_up();
     if (!have_egl())
         return err_set(e, ERR_GL, NULL, NULL,
                        "libEGL.so.1 cannot be loaded; install a GL driver (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri)");
     EGLDeviceEXT devices[MAX_DEVICES];
     int count = query_devices(devices);
-    if (device >= count)
-        return err_set(e, ERR_GL, NULL, NULL, "there is no device %d; --list-devices shows the %d there are", device, count);
-    if (device >= 0 && !open_device(g, devices[device]))
-        return err_set(e, ERR_GL, NULL, NULL, "EGL device %d gives no OpenGL 4.5 core context; --list-devices shows which do",
-                       device);
-    const char *missing = device < 0 ? missing_among(devices, count) : NULL;
-    if (device < 0 && !open_first(g, devices, count))
-        return err_set(e, ERR_GL, NULL, NULL, "no EGL device or surfaceless platform gives an OpenGL 4.5 core context; %s",
-                       missing ? missing : "install a driver (Debian: libegl-mesa0 libgl1-mesa-dri) and see --list-devices");
-    if (device < 0 && g->software && missing) log_warn(log, "nvidia", "running on the CPU: %s", missing);
+    gpu_surroundings s = surroundings_of(devices, count);
+    if (!open_requested(g, request, devices, count, &s, e)) return false;
+    if (g->software && !accept_software(g, request, &s, e)) return false;
+    // Where there is an NVIDIA GPU, it was meant.
+    if (g->software && request.device < 0 && (s.node || s.module))
+        log_warn(log, "nvidia", "running on the CPU: %s", g->why_software);
     log_info(log, "device: %s, %s (%s%s)", g->renderer, g->version, g->platform, g->software ? ", software" : "");
+    if (g->software) log_info(log, "on the CPU: %s", g->why_software);
+    if (g->debug) gpu_debug_begin(g);
     return true;
 }
+
+bool gpu_open(gpu *g, int device, log_t *log, error *e) { return gpu_open_as(g, (gpu_request){.device = device}, log, e); }
 
 void gpu_close(gpu *g)
 {

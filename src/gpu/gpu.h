@@ -29,8 +29,13 @@ typedef struct gpu {
     void *display, *context; // EGLDisplay, EGLContext
     log_t *log;              // borrowed; may be NULL
     char renderer[160], version[96], platform[48];
-    char device[160];                 // the renderer's name alone: results are the same bytes on the same device
-    bool software;                    // a software rasteriser
+    char device[160];                // the renderer's name alone: results are the same bytes on the same device
+    bool software;                   // a software rasteriser
+    char why_software[320];          // why it was taken; "" for hardware
+    bool debug;                      // a debug context: the driver's messages go to the log
+    const char *group;               // of gpu_group_begin, for messages; may be NULL
+    const char *const *source_files; // of the shader that is being compiled, for messages
+    int source_count;
     int max_size;                     // largest texture side
     bool robust;                      // the context reports resets
     GLuint framebuffer, vertex_array; // of gpu_draw_tiles; 0 before the first
@@ -57,10 +62,18 @@ typedef struct gpu_device {
 // What changes the environment of the process (Mesa's cache folder): before the first thread starts. gpu_open makes up for it.
 void gpu_set_up(void);
 
+typedef struct gpu_request {
+    int device;    // -1: the first usable one
+    bool hardware; // a software device is an error that says why there is no other
+    bool debug;
+} gpu_request;
+
 // Opens device number `device` (as listed), or with -1 the first usable one in the order of gpu/choose.h, falling back to the
 // surfaceless platform. Says on the log which one, and warns when a software device is taken where an NVIDIA GPU lacks its
 // driver.
-bool gpu_open(gpu *g, int device, log_t *log, error *e);
+// `*g` stays where it is: a debug context's messages find it. `log` is borrowed until gpu_close.
+bool gpu_open_as(gpu *g, gpu_request request, log_t *log, error *e);
+bool gpu_open(gpu *g, int device, log_t *log, error *e); // of any kind
 void gpu_close(gpu *g);
 
 // Fills up to `max` devices, returns how many there are. Each is initialised and tried.
@@ -68,6 +81,14 @@ int gpu_list_devices(gpu_device *list, int max);
 
 // Why an NVIDIA GPU of this machine is not among the devices, or NULL (gpu/choose.h).
 const char *gpu_missing_device(void);
+// Why no device is hardware, supposing that none is.
+const char *gpu_missing_hardware(void);
+
+// Debuggers and the driver's messages show what lies between as a group; names are literals or outlive it. They do not nest.
+void gpu_group_begin(gpu *g, const char *name);
+void gpu_group_end(gpu *g);
+// Names a GL object in a debug context; `kind` is GL_PROGRAM, GL_TEXTURE or GL_BUFFER.
+void gpu_label(const gpu *g, GLenum kind, GLuint id, const char *name);
 
 // ---- programs
 // ---------------------------------------------------------------------------------------------------------------------

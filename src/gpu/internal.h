@@ -5,6 +5,7 @@
 #include "gpu/gpu.h"
 
 void gpu_programs_free(gpu *g);
+void gpu_debug_begin(gpu *g); // in a context that is current
 void gpu_transfers_free(gpu *g);
 
 size_t gpu_image_row_bytes(const gpu_image *image); // as floats

@@ -189,12 +189,14 @@ static void refuse(const gpu *g, const splice *s, const char *name, const char *
             (int)(n < SHOWN ? n : SHOWN), text, n < SHOWN ? "" : "...");
 }
 
-static GLuint compile(const gpu *g, const splice *s, const char *name, bool drawn, error *e)
+static GLuint compile(gpu *g, const splice *s, const char *name, bool drawn, error *e)
 {
     GLuint program = glCreateProgram();
     char *log = NULL;
+    g->source_files = s->files, g->source_count = s->file_count; // for the driver's messages
     bool ok = (!drawn || attach(program, GL_VERTEX_SHADER, vertex_text, &log, e)) &&
               attach(program, drawn ? GL_FRAGMENT_SHADER : GL_COMPUTE_SHADER, s->text, &log, e) && link_program(program, &log, e);
+    g->source_files = NULL;
     if (!ok) {
         refuse(g, s, name, log ? log : "", e);
         glDeleteProgram(program);
@@ -265,6 +267,7 @@ static gpu_program *make_program(gpu *g, const char *key, const char *name, cons
               (p->id = fetch(g, &s, name, drawn, e)) != 0;
     free_splice(&s);
     if (ok) p->drawn = drawn;
+    if (ok) gpu_label(g, GL_PROGRAM, p->id, name);
     if (ok && !gpu_find_slots(p))
         ok = err_set(e, ERR_GL, name, NULL, "this shader uses more than %d pictures, buffers and outputs", GPU_MAX_SLOTS);
     if (ok) return p;

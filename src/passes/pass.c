@@ -193,9 +193,10 @@ static bool bind_all(const pass_context *c, const pass_call *call, const gpu_pro
         const gpu_buffer *buffer = s->kind == SLOT_BUFFER ? buffer_named(call, s->name) : NULL;
         if (strcmp(s->name, "environment_map") == 0) // the white one has no picture, and is not looked up
             gpu_bind_picture(s, call->environment ? call->environment : &c->environment);
-        else if (image && image->id)
+        else if (image && image->id) {
             gpu_bind_picture(s, image);
-        else if (buffer && buffer->id)
+            gpu_label(c->g, GL_TEXTURE, image->id, s->name);
+        } else if (buffer && buffer->id)
             gpu_bind_buffer(s, buffer);
         else
             return err_set(e, ERR_GL, call->program, s->name, "the shader uses this, and its pass did not give it");
@@ -236,7 +237,7 @@ static int tiles_of(const pass_call *call, const gpu_tiles *t)
     return call->groups[0] ? 0 : call->everywhere ? t->columns * t->rows : t->occupied_count;
 }
 
-bool pass_run(pass_context *c, const pass_call *call, error *e)
+static bool run_call(pass_context *c, const pass_call *call, error *e)
 {
     pass_timing clock = pass_clock(c, call->label ? call->label : call->program);
     const variant_row *row = variant_find(call->program);
@@ -260,4 +261,12 @@ bool pass_run(pass_context *c, const pass_call *call, error *e)
     clock.tiles = tiles_of(call, &tiles);
     pass_clock_stop(c, clock);
     return true;
+}
+
+bool pass_run(pass_context *c, const pass_call *call, error *e)
+{
+    gpu_group_begin(c->g, call->label ? call->label : call->program);
+    bool ok = run_call(c, call, e);
+    gpu_group_end(c->g);
+    return ok;
 }

@@ -33,7 +33,8 @@ void job_init(job *j, const options *o, log_t *log)
 
 static bool open_device(job *j, error *e)
 {
-    if (!gpu_open(&j->g, j->o->device, j->log, e)) return false;
+    const gpu_request request = {.device = j->o->device, .hardware = j->o->require_gpu, .debug = j->o->gpu_debug};
+    if (!gpu_open_as(&j->g, request, j->log, e)) return false;
     j->g.threads = j->threads;
     return true;
 }

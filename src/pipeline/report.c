@@ -195,6 +195,7 @@ static json_object *report_of(const job *j, const frame_result *r, const char *o
     json_put(o, "inputs", inputs); // where the frame's passes are in several files
     json_put_text(o, "output", output);
     json_put_text(o, "device", j->g.renderer);
+    if (j->g.software) json_put_text(o, "why_software", j->g.why_software);
     json_put_text(o, "convention", r->resolution.convention);
     json_put(o, "channels", channels_of(r));
     for (int i = 0; i < r->gb.evidence_count; i++) json_object_array_add(evidence, json_text(r->gb.evidence[i]));

@@ -72,6 +72,7 @@ bool shot_write(shot_report *s, const job *j, const frame_list *failures, const 
     frames_format(failures, failed, sizeof failed);
     json_put_text(o, "version", SSDO_VERSION);
     json_put_text(o, "device", j->g.renderer);
+    if (j->g.software) json_put_text(o, "why_software", j->g.why_software);
     json_put_text(o, "args", args);
     free(args);
     if (j->shot_radius > 0.0) json_put_number(o, "radius", j->shot_radius);

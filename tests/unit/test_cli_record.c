@@ -122,9 +122,9 @@ static void the_round_trip_covers_every_row(void **state)
 static void what_changes_no_pixel_is_left_out(void **state)
 {
     (void)state;
-    char line[] =
-        "/show/in.exr -o /show/out.exr --threads 3 --device 1 --preview /p.png --report /r.json -v --camera /c.json --keep none "
-        "--compression piz --prefix x --env /show/maps/sky.exr --radius auto --amount 1 --mode radiance --scale 1.0";
+    char line[] = "/show/in.exr -o /show/out.exr --threads 3 --device 1 --require-gpu --gpu-debug --preview /p.png --report "
+                  "/r.json -v --camera /c.json --keep none "
+                  "--compression piz --prefix x --env /show/maps/sky.exr --radius auto --amount 1 --mode radiance --scale 1.0";
     assert_record(line, "--env sky.exr");
     char plain[] = "in.exr -o out.exr";
     assert_record(plain, "");

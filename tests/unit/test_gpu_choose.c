@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "gpu/choose.h"
@@ -141,6 +142,84 @@ static void the_machine_is_looked_at(void **state)
     assert_int_equal(system(command), 0);
 }
 
+static void expect_why(const gpu_surroundings *s, const char *part)
+{
+    if (!strstr(gpu_why_software(s), part)) fail_msg("'%s' does not say '%s'", gpu_why_software(s), part);
+}
+
+static void a_software_device_has_its_reason(void **state)
+{
+    (void)state;
+    expect_why(&(gpu_surroundings){.node = false}, "there is no GPU");
+    expect_why(&(gpu_surroundings){.module = true}, "--gpus all");
+    expect_why(&(gpu_surroundings){.node = true, .module = true, .node_denied = true, .render = true},
+               "may not open /dev/nvidia0");
+    expect_why(&(gpu_surroundings){.node = true, .module = true}, "libEGL_nvidia.so.0 cannot be loaded");
+    expect_why(&(gpu_surroundings){.node = true, .library = true}, "egl_vendor.d");
+    expect_why(&(gpu_surroundings){.node = true, .library = true, .vendor = true, .listed = true, .hidden = true},
+               "CUDA_VISIBLE_DEVICES");
+    expect_why(&(gpu_surroundings){.node = true, .library = true, .vendor = true, .listed = true}, "gives no OpenGL 4.5");
+    expect_why(&(gpu_surroundings){.render = true, .render_denied = true, .card = true}, "may not open /dev/dri/renderD*");
+    expect_why(&(gpu_surroundings){.render = true, .card = true}, "libgl1-mesa-dri");
+    expect_why(&(gpu_surroundings){.card = true}, "--device /dev/dri");
+}
+
+// Root may open everything, so another user looks.
+static gpu_surroundings look_as_nobody(const char *root)
+{
+    gpu_surroundings s = {0};
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    pid_t child = fork();
+    if (child == 0) {
+        bool nobody = geteuid() != 0 || (setgid(65534) == 0 && setuid(65534) == 0);
+        s = gpu_look_around(root);
+        _exit(nobody && write(ends[1], &s, sizeof s) == (ssize_t)sizeof s ? 0 : 1);
+    }
+    close(ends[1]);
+    assert_int_equal(read(ends[0], &s, sizeof s), sizeof s);
+    close(ends[0]);
+    assert_int_equal(waitpid(child, NULL, 0), child);
+    return s;
+}
+
+static void forbid(const char *root, const char *path)
+{
+    char full[512];
+    snprintf(full, sizeof full, "%s%s", root, path);
+    assert_int_equal(chmod(full, 0), 0);
+}
+
+static void what_may_not_be_opened_is_seen(void **state)
+{
+    (void)state;
+    char root[] = "/tmp/ssdo-root-XXXXXX", command[64];
+    assert_non_null(mkdtemp(root));
+    mode_t mask = umask(0);
+    touch(root, "/sys/class/drm/renderD128");
+    gpu_surroundings s = gpu_look_around(root);
+    assert_true(s.card && !s.render && !s.node && !s.module);
+    touch(root, "/dev/dri/renderD128");
+    touch(root, "/dev/nvidiactl");
+    touch(root, "/sys/module/nvidia/version");
+    snprintf(command, sizeof command, "chmod -R a+rwX %s", root);
+    assert_int_equal(system(command), 0);
+    s = look_as_nobody(root);
+    assert_true(s.render && !s.render_denied && s.node && !s.node_denied && s.module);
+    forbid(root, "/dev/dri/renderD128");
+    s = look_as_nobody(root);
+    assert_true(s.render && s.render_denied && !s.node_denied);
+    touch(root, "/dev/dri/renderD129"); // another card's
+    s = look_as_nobody(root);
+    assert_false(s.render_denied);
+    forbid(root, "/dev/nvidiactl");
+    s = look_as_nobody(root);
+    assert_true(s.node_denied);
+    umask(mask);
+    snprintf(command, sizeof command, "rm -rf %s", root);
+    assert_int_equal(system(command), 0);
+}
+
 static void a_device_has_a_short_name(void **state)
 {
     (void)state;
@@ -158,10 +237,11 @@ static void a_device_has_a_short_name(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hardware_comes_before_software), cmocka_unit_test(the_assigned_card_is_taken),
-        cmocka_unit_test(hidden_cards_are_left_alone),    cmocka_unit_test(numbers_after_the_variable_was_applied),
-        cmocka_unit_test(cards_are_found_by_uuid),        cmocka_unit_test(a_missing_driver_is_named),
-        cmocka_unit_test(the_machine_is_looked_at),       cmocka_unit_test(a_device_has_a_short_name),
+        cmocka_unit_test(hardware_comes_before_software),   cmocka_unit_test(the_assigned_card_is_taken),
+        cmocka_unit_test(hidden_cards_are_left_alone),      cmocka_unit_test(numbers_after_the_variable_was_applied),
+        cmocka_unit_test(cards_are_found_by_uuid),          cmocka_unit_test(a_missing_driver_is_named),
+        cmocka_unit_test(the_machine_is_looked_at),         cmocka_unit_test(a_device_has_a_short_name),
+        cmocka_unit_test(a_software_device_has_its_reason), cmocka_unit_test(what_may_not_be_opened_is_seen),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
