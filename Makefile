@@ -76,6 +76,8 @@ help:
 	@echo 'make bench-paper   cost of ssdo'\''s light and bounce beside the paper, of s3ho beside hemisphere'
 	@echo 'make bench-sampling   error by the sequence that slices, steps and sectors draw from, and by the spacing of steps'
 	@echo 'make bench-frame   cost of a whole frame beside copying its file (bench-frame-readme: into tests/bench/RESULTS.md)'
+	@echo 'make dist     an archive that runs where it is unpacked; make check-dist: in fresh Debian roots, as root'
+	@echo 'make check-systems SYSTEMS="bookworm trixie"   both commands of README in fresh Debian roots, as root; an hour'
 	@echo 'make all | lint | format | install PREFIX= DESTDIR= | uninstall | clean'
 
 $(BIN): $(BUILD)/src/main.o $(BUILD)/libssdo.a
@@ -330,6 +332,21 @@ uninstall:
 	rm -f $(addprefix $(DESTDIR),$(BINDIR)/ssdo-filter $(PLUGIN:$(BUILD)/%=$(LIBDIR)/%) $(MANDIR)/ssdo-filter.1 $(BASHDIR)/ssdo-filter \
 	    $(ZSHDIR)/_ssdo-filter $(DOCDIR)/README.md $(FARM:samples/farm/%=$(DOCDIR)/examples/%))
 	-rmdir $(DESTDIR)$(LIBDIR) $(DESTDIR)$(DOCDIR)/examples $(DESTDIR)$(DOCDIR)
+
+# Program, modules and the libraries they need in one archive (tests/dist/make.sh).
+DEPS_DIST := patchelf xz-utils binutils
+SYSTEMS   ?= bookworm trixie
+.PHONY: dist check-dist check-systems
+dist:
+	@sh tests/deps.sh $(DEPS_BUILD) $(DEPS_DIST)
+	@$(MAKE) $(JOBS) --no-print-directory all
+	@sh tests/dist/make.sh $(BUILD) $(VERSION)
+check-dist:
+	@sh tests/deps.sh debootstrap openimageio-tools
+	@sh tests/dist/check.sh $(BUILD)/ssdo-filter-$(VERSION)-linux-$(shell uname -m).tar.xz $(SYSTEMS)
+check-systems:
+	@sh tests/deps.sh debootstrap
+	@sh tests/systems/check.sh $(SYSTEMS)
 
 clean: ; rm -rf $(BUILD) demo
 

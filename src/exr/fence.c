@@ -222,10 +222,12 @@ static bool check_stream(walker *w)
     return check_parts(w, flags);
 }
 
-bool exr_check_header(const char *path, int fd, size_t size, error *e)
+bool exr_check_header(const char *path, int fd, size_t size, uint64_t *end, error *e)
 {
     walker w = {.fd = fd, .path = path, .size = size, .e = e};
-    return check_stream(&w);
+    bool ok = check_stream(&w);
+    *end = w.at;
+    return ok;
 }
 
 // The table begins with the offset of a chunk, which lies behind it.

@@ -73,12 +73,21 @@ static void hide_deep_flag(uint8_t *bytes, uint64_t got, uint64_t offset)
     if (offset <= PLACE && offset + got > PLACE && bytes[PLACE - offset] & MULTIPART) bytes[PLACE - offset] &= (uint8_t)~DEEP;
 }
 
+// The part of the tables that lies in [offset, offset + got).
+static void put_restored(const exr_reader *r, uint8_t *bytes, uint64_t got, uint64_t offset)
+{
+    uint64_t from = offset > r->tables ? offset : r->tables, end = r->tables + r->restored_size;
+    uint64_t to = offset + got < end ? offset + got : end;
+    if (from < to) memcpy(bytes + (from - offset), r->restored + (from - r->tables), to - from);
+}
+
 static int64_t read_bytes(exr_const_context_t context, void *user, void *buffer, uint64_t size, uint64_t offset,
                           exr_stream_error_func_ptr_t report)
 {
     const exr_reader *r = user;
     size_t got = infile_read_at(r->fd, buffer, size, offset);
     hide_deep_flag(buffer, got, offset);
+    if (r->restored) put_restored(r, buffer, got, offset);
     if (!errno) return (int64_t)got; // the library knows what it needs
     report(context, EXR_ERR_READ_IO, "%s", strerror(errno));
     return -1;
@@ -224,13 +233,14 @@ bool exr_file_open(const char *path, exr_file **out, error *e)
     int count = 0;
     r->fd = infile_open(path, (infile_kind){NULL, ERR_INPUT}, &r->size, e);
     file->path = mem_string(path, e);
-    if (r->fd < 0 || !file->path || !exr_check_header(path, r->fd, r->size, e) || !open_core(r, e)) goto fail;
+    if (r->fd < 0 || !file->path || !exr_check_header(path, r->fd, r->size, &r->tables, e) || !open_core(r, e)) goto fail;
     exr_get_count(file->core, &count);
     file->parts = mem_zero((size_t)count, sizeof *file->parts, e);
     if (!file->parts) goto fail;
     file->part_count = count;
     for (int i = 0; i < count; i++)
         if (!fill_part(file, i, e)) goto fail;
+    if (!exr_restore_tables(r, e)) goto fail;
     r->log.armed = false;
     *out = file;
     return true;
@@ -262,6 +272,7 @@ void exr_file_close(exr_file *file)
     }
     free(file->parts);
     free(file->path);
+    free(((exr_reader *)file)->restored);
     exr_context_t core = file->core;
     if (core) exr_finish(&core);
     exr_reader *r = (exr_reader *)file;

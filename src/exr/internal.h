@@ -35,6 +35,9 @@ typedef struct exr_reader {
     core_log log;
     int fd; // what was checked is what is read, whatever the path names meanwhile
     size_t size;
+    uint64_t tables;   // where the chunk tables begin: the end of the headers
+    uint8_t *restored; // what the library is given in place of the tables, from exr_restore_tables; NULL: the file's own
+    size_t restored_size;
 } exr_reader;
 
 void core_log_arm(core_log *log);
@@ -44,8 +47,14 @@ bool core_log_report(core_log *log, exr_result_t code, error_code kind, const ch
 
 // Walks the headers of an open file of `size` bytes without the library: the magic number, version and flags, every name and
 // size within its bounds and the file, the required attributes there and of their type, no deep part. Fills e and returns false
-// otherwise. What passes cannot lead the library's parser astray.
-bool exr_check_header(const char *path, int fd, size_t size, error *e);
+// otherwise. What passes cannot lead the library's parser astray. *end: the first byte after the headers.
+bool exr_check_header(const char *path, int fd, size_t size, uint64_t *end, error *e);
+
+// For an open file whose parts are known: where a part's chunk table is all zero, as exrmultipart of OpenEXR 3.2 and later leaves
+// it, the chunks are looked up one after the other, once, and the library is given a table of them. A table is made only if every
+// chunk of the file is there, whole and once; else, and where a part is deep or has several levels, it stays as it is and the
+// file is refused when its pixels are read. False only when memory runs out.
+bool exr_restore_tables(exr_reader *r, error *e);
 
 // Fills the views of a part whose channels are known, and the view of each channel.
 bool exr_fill_views(const exr_file *file, int index, exr_part *p, error *e);

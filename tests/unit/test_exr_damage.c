@@ -341,6 +341,7 @@ static void test_empty_chunk_table(void **state)
     raw_required(&raw, 0, 0, 0);
     raw_finish(&raw);
     memset(raw.bytes + raw.size - 18, 0, 8);
+    raw.size--; // a whole chunk would be found without the table: test_exr_tables.c
     expect_refusal("truncated");
 }
 
