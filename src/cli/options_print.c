@@ -55,7 +55,8 @@ void options_print_help(FILE *to)
         for (int i = 0; i < option_row_count; i++)
             if ((int)option_rows[i].group == g && !option_rows[i].hidden) print_help_row(to, &option_rows[i]);
     }
-    fprintf(to, "\nExit status: 0 done, 1 some frames failed, 2 usage, 3 input, 4 output, 5 GL or EGL, 6 memory,\n7 doubtful input under --strict.\n"
+    fprintf(to, "\nExit status: 0 done, 1 some frames failed, 2 usage, 3 input, 4 output, 5 GL or EGL, 6 memory,\n7 doubtful "
+                "input under --strict.\n"
                 "The manual: man ssdo-filter\n");
 }
 
