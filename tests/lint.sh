@@ -13,6 +13,13 @@ elif ! clang-format --dry-run -Werror $sources >"$out/format" 2>&1; then
     format="formatting not judged: it is checked by clang-format 14, and $formatter would change $(grep -c 'code should be' "$out/format") places"
 fi
 
+# A room of src includes those before it in this list alone (src/README.md).
+later=
+for room in pipeline passes gpu light gbuffer exr cli plugin base; do
+    [ -z "$later" ] || ! grep -nE "^#include \"($later)/" src/$room/*.[ch] || { echo "lint: $room may not include these" >&2; exit 1; }
+    later=$room${later:+|$later}
+done
+
 # Every variant that a pass can ask for, in both ways of reading pictures. A hundred files a run: starting the validator is what costs.
 count=0
 for read in image texture; do
