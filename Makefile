@@ -308,6 +308,18 @@ lint: deps-check
 	@$(MAKE) $(JOBS) --no-print-directory $(LISTS)
 	@sh tests/lint.sh $(BUILD)
 	@$(MAKE) $(JOBS) --no-print-directory BUILD=$(BUILD)/lint EXTRA_CFLAGS=-Werror all
+	@! command -v clang >/dev/null || $(MAKE) $(JOBS) --no-print-directory lint-clang
+
+# The same warnings by clang, where there is one: it reads the sources and makes nothing.
+.PHONY: lint-clang tidy
+lint-clang tidy: ALL_CFLAGS += -DSSDO_VERSION='"$(VERSION)"'
+lint-clang: $(BUILD)/shaders.c
+	@printf '%s\n' src/main.c $(SRC) | xargs -n 8 -P $$(nproc) clang -fsyntax-only -Werror $(ALL_CFLAGS)
+	@echo 'lint: no warning by clang'
+
+# What clang-tidy has to say (.clang-tidy): to be read, not to be obeyed.
+tidy: $(BUILD)/shaders.c
+	@clang-tidy --quiet src/main.c $(SRC) -- $(ALL_CFLAGS)
 
 format: ; clang-format -i $$(git ls-files 'src/*.[ch]' 'src/*.cpp' 'tests/*.[ch]')
 

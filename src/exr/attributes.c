@@ -212,7 +212,7 @@ static exr_result_t borrow(exr_context_t to, int part, const exr_attribute_t *so
     exr_result_t rv = exr_attr_declare_by_type(to, part, source->name, source->type_name, &a);
     if (rv != EXR_ERR_SUCCESS) return rv;
     if (a->type != source->type) return EXR_ERR_ATTR_TYPE_MISMATCH;
-    size_t size = exr_attr_value_size(a->type);
+    size_t size = exr_attr_value_size((int)a->type);
     if (size)
         memcpy(a->rawptr, source->rawptr, size);
     else

@@ -56,7 +56,7 @@ static bool same_value(const exr_attribute_t *a, const exr_attribute_t *b)
     case EXR_ATTR_LINEORDER:
         return a->uc == b->uc;
     default: {
-        size_t size = exr_attr_value_size(a->type);
+        size_t size = exr_attr_value_size((int)a->type);
         return size > 0 && memcmp(a->rawptr, b->rawptr, size) == 0;
     }
     }

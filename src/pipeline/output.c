@@ -115,7 +115,7 @@ static int compression_of(const options *o, const exr_part *part)
                  {"zip", EXR_COMPRESSION_ZIP},
                  {"piz", EXR_COMPRESSION_PIZ}};
     for (size_t i = 0; o->compression && i < sizeof table / sizeof *table; i++)
-        if (strcmp(table[i].name, o->compression) == 0) return table[i].value;
+        if (strcmp(table[i].name, o->compression) == 0) return (int)table[i].value;
     return part->lossy ? EXR_COMPRESSION_ZIP : part->compression;
 }
 
