@@ -5,6 +5,7 @@
 
 Writes out_folder/rebuilt0001.exr = DiffCol * (radiance + indirect) and out_folder/composite0001.exr, both as 32-bit float.
 """
+import re
 import sys
 
 import bpy
@@ -16,9 +17,32 @@ scene.use_nodes = True
 scene.render.resolution_x, scene.render.resolution_y = image.size
 tree = scene.node_tree
 tree.nodes.clear()
-source = tree.nodes.new("CompositorNodeImage")
-source.image = image
-print("SOCKETS", image.type, ",".join(s.name for s in source.outputs))
+
+
+def layers(node):
+    """The names of an image's layers, which Blender tells only when one is not found."""
+    try:
+        node.layer = "?"
+    except TypeError as e:
+        return re.findall(r"'([^']+)'", str(e).split("not found in")[1])
+    return []
+
+
+# Blender 3.4 puts all parts of a file into one layer; 4.3 makes a layer of each.
+def load(layer=None):
+    node = tree.nodes.new("CompositorNodeImage")
+    node.image = image
+    if layer:
+        node.layer = layer
+    return node
+
+
+sources = {}
+first = load()
+for node in [load(layer) for layer in layers(first)] if first.has_layers else [first]:
+    for socket in node.outputs:
+        sources.setdefault(socket.name, socket)
+print("SOCKETS", image.type, ",".join(sources))
 
 
 def mix(kind, a, b):
@@ -29,13 +53,13 @@ def mix(kind, a, b):
     return node.outputs[0]
 
 
-light = mix("ADD", source.outputs["radiance"], source.outputs["indirect"])
+light = mix("ADD", sources["radiance"], sources["indirect"])
 files = tree.nodes.new("CompositorNodeOutputFile")
 files.base_path = folder
 files.format.file_format = "OPEN_EXR"
 files.format.color_depth = "32"
 files.file_slots.clear()
-for name, socket in (("rebuilt", mix("MULTIPLY", source.outputs["DiffCol"], light)), ("composite", source.outputs["composite"])):
+for name, socket in (("rebuilt", mix("MULTIPLY", sources["DiffCol"], light)), ("composite", sources["composite"])):
     files.file_slots.new(name)
     tree.links.new(socket, files.inputs[name])
 bpy.ops.render.render()
