@@ -45,6 +45,13 @@ static bool remember(log_t *log, const char *key, const char *text)
     return true;
 }
 
+void log_each_warning(log_t *log, void (*take)(void *context, const char *text), void *context)
+{
+    pthread_mutex_lock(&log->lock);
+    for (int i = 0; i < log->warning_count; i++) take(context, log->warnings[i]);
+    pthread_mutex_unlock(&log->lock);
+}
+
 void log_wipe(log_t *log)
 {
     if (log->bar) fputs(LOG_WIPE, stderr);

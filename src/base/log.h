@@ -32,6 +32,9 @@ void log_error(log_t *log, const char *format, ...) __attribute__((format(printf
 // "ssdo-filter: ..." on stderr with -v only.
 void log_info(log_t *log, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+// Hands out the warnings so far, one after the other, while other threads may add some.
+void log_each_warning(log_t *log, void (*take)(void *context, const char *text), void *context);
+
 // Takes a progress bar away, if there is one. The caller holds the lock.
 void log_wipe(log_t *log);
 

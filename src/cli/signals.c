@@ -7,7 +7,7 @@
 
 #include "base/outfile.h"
 
-enum { GRACE = 500 * 1000 };     // microseconds
+enum { GRACE = 250 * 1000 };     // microseconds
 static volatile int stop_signal; // a handler is handed nothing
 
 // For signal handlers.

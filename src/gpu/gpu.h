@@ -6,6 +6,7 @@
 #define SSDO_GPU_GPU_H
 
 #include <epoxy/gl.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -49,8 +50,9 @@ typedef struct gpu {
     gpu_limits limits;
     gpu_program **programs; // owned
     int program_count;
-    int programs_compiled, programs_cached; // of program_count: made from source, or taken from the cache of an earlier run
-    gpu_counts counts;                      // since the context was opened
+    atomic_int programs_compiled, programs_cached; // reports read them beside the GL thread. Of program_count: made from source,
+                                                   // or taken from the cache of an earlier run
+    gpu_counts counts;                             // since the context was opened
 } gpu;
 
 // One EGL device as --list-devices shows it.

@@ -21,6 +21,8 @@ json_object *json_text(const char *s)
     return o;
 }
 
+void json_add_text(void *list, const char *s) { json_object_array_add(list, json_text(s)); }
+
 void json_put_text(json_object *o, const char *key, const char *s) { json_put(o, key, json_text(s)); }
 
 void json_put_number(json_object *o, const char *key, double v)

@@ -9,6 +9,8 @@
 
 // A string in UTF-8 whatever `s` holds (base/text.h); NULL becomes null.
 json_object *json_text(const char *s);
+// Appends one to a list (a json_object *).
+void json_add_text(void *list, const char *s);
 
 void json_put(json_object *o, const char *key, json_object *value);
 void json_put_text(json_object *o, const char *key, const char *s);

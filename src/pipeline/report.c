@@ -220,7 +220,7 @@ static json_object *report_of(const job *j, const frame_result *r, const char *o
     json_put(o, "programs", programs_of(j));
     json_put(o, "uploads", uploads_of(j, r));
     json_put(o, "clamped_samples", json_object_new_int64((int64_t)r->clamped));
-    for (int i = 0; i < j->log->warning_count; i++) json_object_array_add(warnings, json_text(j->log->warnings[i]));
+    log_each_warning(j->log, json_add_text, warnings);
     json_put(o, "warnings", warnings);
     return o;
 }

@@ -86,7 +86,7 @@ bool shot_write(shot_report *s, const job *j, const frame_list *failures, const 
     json_put(o, "times", times);
     json_put(o, "busy", busy_of(s));
     json_put(o, "clamped_samples", json_object_new_int64((int64_t)s->clamped));
-    for (int i = 0; i < j->log->warning_count; i++) json_object_array_add(warnings, json_text(j->log->warnings[i]));
+    log_each_warning(j->log, json_add_text, warnings);
     json_put(o, "warnings", warnings);
     json_put(o, "frames", s->frames);
     s->frames = NULL;
