@@ -31,7 +31,7 @@ for what in "$dir/pipe" /dev/zero "$dir"; do
     expect 3 "not a regular file" "$in" --albedo-colorspace any --ocio "$what"
 done
 expect 3 "not a regular file" "$dir/in.exr" "$dir/pipe"
-expect 3 "does not exist" -
+expect 2 "goes through a pipe" -
 # A material file is no reason to stop, and none to wait.
 printf 'mtllib pipe\nv -9 -9 -9\nv 9 -9 -9\nv 0 9 9\nf 1 2 3\n' >"$dir/mesh.obj"
 timeout -k 1 10 "$SSDO" "$in" --method raytrace --mesh "$dir/mesh.obj" -o "$dir/out.exr" >/dev/null 2>"$dir/err"
