@@ -2,25 +2,12 @@
 //
 // What must hold whatever the bytes are: an error with a sentence, or a G-buffer that keeps gbuffer.h's contract. Memory, time
 // and undefined behaviour are the sanitizers' and libFuzzer's own business (-rss_limit_mb, -timeout).
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <sys/mman.h>
-#include <unistd.h>
+#include <math.h>
 
 #include "exr/file.h"
+#include "fuzz.h"
 #include "gbuffer/gbuffer.h"
 #include "gbuffer/resolve.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define CHECK(condition)                                                                                                         \
-    do {                                                                                                                         \
-        if (!(condition)) {                                                                                                      \
-            fprintf(stderr, "does not hold: %s\n", #condition);                                                                  \
-            abort();                                                                                                             \
-        }                                                                                                                        \
-    } while (0)
 
 static void check_colours(const float *values, size_t n)
 {
@@ -80,12 +67,8 @@ out:
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static int fd = -1;
-    static char path[64];
-    if (fd < 0) {
-        fd = memfd_create("fuzz.exr", 0);
-        snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
-    }
-    CHECK(ftruncate(fd, 0) == 0 && pwrite(fd, data, size, 0) == (ssize_t)size);
+    char path[64];
+    fuzz_file(&fd, path, data, size);
     error e = {0};
     if (!read_frame(path, &e)) CHECK(e.code != ERR_NONE && e.message[0]);
     return 0;

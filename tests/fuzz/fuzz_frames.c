@@ -1,20 +1,7 @@
 // libFuzzer target: frame ranges and file patterns. The input is a range up to the first newline, then a pattern.
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "cli/frames.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define CHECK(condition)                                                                                                         \
-    do {                                                                                                                         \
-        if (!(condition)) {                                                                                                      \
-            fprintf(stderr, "does not hold: %s\n", #condition);                                                                  \
-            abort();                                                                                                             \
-        }                                                                                                                        \
-    } while (0)
+#include "fuzz.h"
 
 static int by_value(const void *a, const void *b)
 {

@@ -1,24 +1,43 @@
 #!/bin/sh
-# run.sh BUILD SECONDS: builds the fuzz targets with clang's libFuzzer, address and undefined-behaviour sanitizers, lets each run for
-# its share of the time (nine tenths the EXR target) at low priority, and says how it went. New inputs stay in BUILD/fuzz/corpus-*,
-# crashing ones in BUILD/fuzz/crashes.
+# run.sh BUILD SECONDS [TARGET...]: builds the fuzz targets with clang's libFuzzer, address and undefined-behaviour sanitizers, lets
+# each run for its share of the time at low priority, and says how it went. Without names: exr and frames. They start from
+# tests/fuzz/corpus and what make_corpus writes; new inputs stay in BUILD/fuzz/corpus-*, crashing ones in BUILD/fuzz/crashes.
+# `program` is no libFuzzer target: mutate.sh drives the whole program.
 set -eu
-build=$1/fuzz seconds=$2
+top=$1 build=$1/fuzz seconds=$2
+shift 2
+[ $# -gt 0 ] || set -- exr frames
 cc=${FUZZ_CC:-clang}
 command -v "$cc" >/dev/null 2>&1 || { echo "fuzz: no $cc here (Debian: clang libclang-rt-dev)"; exit 77; }
-mkdir -p "$build/corpus-exr" "$build/corpus-frames" "$build/crashes"
-flags="-std=c17 -D_GNU_SOURCE -DSSDO_VERSION=\"fuzz\" -Isrc -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined"
+flags="-std=c17 -D_GNU_SOURCE -DSSDO_VERSION=\"fuzz\" -Isrc -g -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined"
 packages="OpenEXR libdeflate json-c"
 system=$(pkg-config --cflags $packages | sed 's/-I/-isystem /g')
+libs="-Wl,--as-needed $(pkg-config --libs $packages) -lm -ldl -lpthread"
+mkdir -p "$build/crashes" "$build/objects"
+
+# Shares of a hundred, and the longest input.
+share() {
+    case $1 in
+    exr) echo 35 ;; mesh) echo 15 ;; json) echo 10 ;; args) echo 10 ;; attributes) echo 10 ;; frames) echo 3 ;; program) echo 17 ;;
+    esac
+}
+longest() { case $1 in exr) echo 32768 ;; mesh) echo 8192 ;; *) echo 2048 ;; esac; }
+
 echo "fuzz: building"
-$cc $flags $system tests/fuzz/fuzz_exr.c src/base/*.c src/exr/*.c src/plugin/*.c src/gbuffer/*.c -o "$build/fuzz_exr" -Wl,--as-needed \
-    $(pkg-config --libs $packages) -lm -ldl -lpthread
-$cc $flags tests/fuzz/fuzz_frames.c src/base/*.c src/cli/frames.c -o "$build/fuzz_frames" -lm -lpthread
-"$1/tests/make_corpus" "$build/corpus-exr"
-oiiotool "$build/corpus-exr/kind3.exr" --tile 8 8 -o "$build/corpus-exr/tiled.exr" >/dev/null 2>&1 || true
-printf '1-100x2, 1-10:4,7,-5--1%%8\nshot.####.exr' >"$build/corpus-frames/a"
-printf '10-1x3\nf.%%04d.exr' >"$build/corpus-frames/b"
-printf '0-15:4%%4\n/a/b.$F4.exr' >"$build/corpus-frames/c"
+for f in src/base/*.c src/exr/*.c src/plugin/*.c src/gbuffer/*.c src/light/*.c src/cli/*.c; do
+    o=$build/objects/$(echo "$f" | tr / _).o
+    [ "$o" -nt "$f" ] || $cc $flags $system -c "$f" -o "$o"
+done
+total=0
+for t in "$@"; do
+    total=$((total + $(share "$t")))
+    [ "$t" = program ] && continue
+    $cc $flags -fsanitize=fuzzer $system "tests/fuzz/fuzz_$t.c" "$build"/objects/*.o -o "$build/fuzz_$t" $libs
+    mkdir -p "$build/corpus-$t"
+    [ ! -d "tests/fuzz/corpus/$t" ] || cp tests/fuzz/corpus/"$t"/* "$build/corpus-$t"
+done
+[ ! -d "$build/corpus-exr" ] || "$top/tests/make_corpus" "$build/corpus-exr"
+[ ! -d "$build/corpus-exr" ] || oiiotool "$build/corpus-exr/kind3.exr" --tile 8 8 -o "$build/corpus-exr/tiled.exr" >/dev/null 2>&1 || true
 
 go() { # TARGET SECONDS MAX_LENGTH
     code=0
@@ -30,5 +49,8 @@ go() { # TARGET SECONDS MAX_LENGTH
     echo "figure: fuzz_$1: ${runs:-no} executions in $2 s, ${edges:-0} edges covered, peak ${peak:-?} MB, $([ $code = 0 ] && echo 0 crashes || echo CRASHED)"
     [ $code = 0 ] || { tail -40 "$build/$1.log"; exit 1; }
 }
-go exr $((seconds - seconds / 10)) 32768
-go frames $((seconds / 10 > 0 ? seconds / 10 : 1)) 256
+for t in "$@"; do
+    time=$((seconds * $(share "$t") / total))
+    [ $time -gt 0 ] || time=1
+    if [ "$t" = program ]; then sh tests/fuzz/mutate.sh "$top" $time; else go "$t" $time "$(longest "$t")"; fi
+done
