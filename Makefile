@@ -70,7 +70,8 @@ help:
 	@echo 'make check-hosts   our output in Blender, oiiotool, exrmultipart and ImageMagick'
 	@echo 'make check-hard    the hard cases, all of them; check-threads: the batch under the thread sanitizer'
 	@echo 'make check-wild DIR=folder   a folder of EXR files: read how, fit, time, exit, verdict'
-	@echo 'make fuzz FUZZ_SECONDS=60   random files and frame ranges, by libFuzzer'
+	@echo 'make check SANITIZE=address,undefined   all tests under the sanitizers; check-valgrind: a frame under valgrind'
+	@echo 'make fuzz FUZZ_SECONDS=60   random files and frame ranges, by libFuzzer; fuzz-all MINUTES=60: all that is read'
 	@echo 'make bench    error against time of every method (bench-unseen: on scenes rendered afresh)'
 	@echo 'make bench-error   --error: its estimate, and its time beside fixed budgets'
 	@echo 'make bench-paper   cost of ssdo'\''s light and bounce beside the paper, of s3ho beside hemisphere'
@@ -132,6 +133,12 @@ $(BUILD)/tests/hard_%: $(BUILD)/tests/hard/hard_%.o $(BUILD)/tests/hard/hard.o $
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(PKG_LIBS)
 
+# What makes system calls fail, for tests/hard/table.sh; never sanitized, for it is loaded before everything else.
+FAULT    := $(BUILD)/tests/fault.so
+$(FAULT): tests/hard/fault.c
+	@mkdir -p $(@D)
+	$(Q)$(CC) -std=gnu17 -D_GNU_SOURCE $(WARN) -O1 -g -shared -fPIC -o $@ $< -ldl
+
 # Order-only: checks once per make run that the packages of the build are there.
 .PHONY: deps-stamp
 deps-stamp: ; @sh tests/deps.sh --quiet $(DEPS_BUILD)
@@ -159,7 +166,7 @@ check-fast: deps-check
 check-hard: deps-check
 	@$(MAKE) $(JOBS) --no-print-directory all hard
 	@SSDO_HARD=whole SSDO_SCRIPTS='tests/hard/*.sh' sh tests/run.sh $(BUILD) $(HARD)
-hard: $(HARD)
+hard: $(HARD) $(FAULT)
 
 # A folder of anybody's EXR files: make check-wild DIR=folder [WILD='--fov 45'] (tests/wild/check.py).
 .PHONY: check-wild
@@ -174,6 +181,7 @@ check-wild:
 hard-tables: all hard
 	@rm -rf $(BUILD)/tables && mkdir -p $(BUILD)/tables
 	@for t in $(HARD); do SSDO_TABLES=$(BUILD)/tables $$t >/dev/null 2>&1 || echo "failed: $$t"; done
+	@SSDO_HARD=whole SSDO_TABLES=$(BUILD)/tables SSDO=$(abspath $(BIN)) sh tests/hard/table.sh
 	@cat tests/hard/results-head.md $(BUILD)/tables/*.md >tests/hard/RESULTS.md
 
 # The batch path under the thread sanitizer.
@@ -182,9 +190,22 @@ check-threads: deps-check
 	@$(MAKE) $(JOBS) --no-print-directory BUILD=$(BUILD)/tsan SANITIZE=thread all
 	@sh tests/sanitize/threads.sh $(BUILD)/tsan
 
-# Random input to the readers, by libFuzzer (tests/fuzz): make fuzz FUZZ_SECONDS=3600.
+# One frame under valgrind.
+.PHONY: check-valgrind
+check-valgrind: deps-check
+	@sh tests/deps.sh valgrind
+	@$(MAKE) $(JOBS) --no-print-directory all
+	@sh tests/sanitize/valgrind.sh $(BUILD)
+
+# Random input to the readers, by libFuzzer (tests/fuzz): make fuzz FUZZ_SECONDS=3600; to everything that reads: fuzz-all MINUTES=60.
 FUZZ_SECONDS ?= 60
-.PHONY: fuzz
+MINUTES  ?= 60
+.PHONY: fuzz fuzz-all
+fuzz-all: deps
+	@sh tests/deps.sh clang libclang-rt-dev openimageio-tools python3
+	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/tests/make_corpus
+	@$(MAKE) $(JOBS) --no-print-directory BUILD=$(BUILD)/asan SANITIZE=address,undefined all
+	@sh tests/fuzz/run.sh $(BUILD) $$((60 * $(MINUTES))) exr mesh json args attributes frames program
 fuzz: deps
 	@sh tests/deps.sh clang libclang-rt-dev/libclang-rt-14-dev openimageio-tools
 	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/tests/make_corpus
@@ -196,7 +217,7 @@ LISTS     := $(BUILD)/tests/list_variants
 $(LISTS): $(BUILD)/tests/limits/list_variants.o $(BUILD)/libssdo.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
-unit: $(UNIT) $(HARD) $(LISTS)
+unit: $(UNIT) $(HARD) $(FAULT) $(LISTS)
 
 # Real schedulers on this machine (tests/farm/check.sh); what it starts, it stops.
 .PHONY: check-farm
