@@ -100,7 +100,7 @@ occurrences() {
     cat "$dir/count"
 }
 
-for kind in open read write fsync rename close mmap allocate mkdir unlink stat folder thread egl; do
+for kind in open read write fsync rename close mmap allocate mkdir unlink folder thread egl; do
     row="| $kind"
     for form in single sequence; do
         n=$(occurrences $kind $form) || { echo "$n"; exit 1; }
