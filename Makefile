@@ -18,7 +18,7 @@ endif
 # Debian packages (tests/deps.sh): what the build needs, what `make check` needs on top.
 DEPS_BUILD := gcc g++ pkg-config libopenexr-dev libopenimageio-dev libopencolorio-dev libembree-dev libegl-dev libegl-mesa0 libgl1-mesa-dri \
               libepoxy-dev libdeflate-dev libjson-c-dev libxxhash-dev
-DEPS_CHECK := libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender man-db parallel python3
+DEPS_CHECK := patchelf libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender man-db parallel python3
 DEPS_BENCH := gnuplot-nox
 DEPS_HOSTS := blender openimageio-tools openexr imagemagick libmagickcore-6.q16-6-extra/libmagickcore-7.q16-10-extra
 DEPS_FARM  := blender slurm-wlm munge parallel python3-yaml openimageio-tools
@@ -72,6 +72,7 @@ help:
 	@echo 'make check-wild DIR=folder   a folder of EXR files: read how, fit, time, exit, verdict'
 	@echo 'make check SANITIZE=address,undefined   all tests under the sanitizers; check-valgrind: a frame under valgrind'
 	@echo 'make fuzz FUZZ_SECONDS=60   random files and frame ranges, by libFuzzer; fuzz-all MINUTES=60: all that is read'
+	@echo 'make gpu-bundle   one archive for a machine with a GPU and nothing of ours: tests, layers beside ours, times'
 	@echo 'make bench    error against time of every method (bench-unseen: on scenes rendered afresh)'
 	@echo 'make bench-error   --error: its estimate, and its time beside fixed budgets'
 	@echo 'make bench-paper   cost of ssdo'\''s light and bounce beside the paper, of s3ho beside hemisphere'
@@ -213,11 +214,21 @@ fuzz: deps
 $(BUILD)/tests/make_corpus: $(BUILD)/tests/fuzz/make_corpus.o $(TESTLIB) $(BUILD)/libssdo.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
+# What is tried on a machine with a GPU (tests/gpu): one archive that needs nothing there but a driver.
+GPU_TOOLS := $(BUILD)/tests/gpu/compare $(BUILD)/tests/bench/make_input
+$(BUILD)/tests/gpu/%: $(BUILD)/tests/gpu/%.o $(BUILD)/libssdo.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
+.PHONY: gpu-bundle
+gpu-bundle: deps-check
+	@$(MAKE) $(JOBS) --no-print-directory all unit
+	@sh tests/gpu/make.sh $(BUILD)
+
 LISTS     := $(BUILD)/tests/list_variants
 $(LISTS): $(BUILD)/tests/limits/list_variants.o $(BUILD)/libssdo.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
-unit: $(UNIT) $(HARD) $(FAULT) $(LISTS)
+unit: $(UNIT) $(HARD) $(FAULT) $(LISTS) $(GPU_TOOLS)
 
 # Real schedulers on this machine (tests/farm/check.sh); what it starts, it stops.
 .PHONY: check-farm

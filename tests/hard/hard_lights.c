@@ -36,7 +36,7 @@ static const sky skies[] = {
     {"constant 3", 64, 32, 3.0f, 0, 0.0f, 0.0, 3.0 + 1e-3},
     {"1 x 1", 1, 1, 2.0f, 0, 0.0f, 0.0, 2.0 + 1e-3},
     {"one hot texel of 1e6", 256, 128, 0.1f, 1, 1e6f, 0.0, 0.0},
-    {"negative", 32, 16, -1.0f, 0, 0.0f, 0.0, 1e-30},
+    {"half negative", 32, 16, 1.0f, 256, -1.0f, 0.0, 1.0 + 1e-3}, // where all is, it is refused (tests/golden/hostile.sh)
     {"half NaN", 32, 16, 1.0f, 256, NAN, 0.0, 1.0 + 1e-3},
     {"infinite texels", 32, 16, 1.0f, 5, INFINITY, 0.0, 1.0 + 1e-3},
     {"1e30", 32, 16, 1e30f, 0, 0.0f, 0.0, 0.0},

@@ -309,7 +309,8 @@ static void files_are_read_or_refused(void **state)
     static const struct {
         const char *text, *complaint;
     } bad[] = {{"{", "JSON"},
-               {"[]", "\"spheres\""},
+               {"[]", "one JSON object"},
+               {"{\"sphere\": []}", "\"spheres\""},
                {"{\"spheres\": [{\"centre\": [1, 2], \"radius\": 1}]}", "sphere 1 needs a \"centre\""},
                {"{\"spheres\": [{\"centre\": [1, 2, 3], \"radius\": 0}]}", "\"radius\" above 0"},
                {"{\"spheres\": [{\"centre\": [1, 2, 3], \"radius\": 1}, 7]}", "sphere 2 is not"},

@@ -1,0 +1,36 @@
+#!/bin/sh
+# make.sh BUILD: BUILD/gpu-bundle.tar.xz, for a machine that has a GPU and its driver and nothing of ours: the program, the tests that use
+# GL, the samples, what llvmpipe makes of them, the libraries that a bare machine lacks, and tests/gpu/run.sh.
+set -eu
+build=$1 stage=$1/gpu-bundle
+command -v patchelf >/dev/null 2>&1 || { echo "gpu-bundle: needs patchelf" >&2; exit 1; }
+rm -rf "$stage" && mkdir -p "$stage/bin" "$stage/lib" "$stage/recorded" "$stage/samples"
+
+# Tests that need OpenImageIO, OpenColorIO or Embree, the shaders' sources or the samples' truths stay here; run.sh names them.
+left_out="test_colour test_raytrace test_batch_memory test_samples hard_shader_errors"
+for source in $(grep -lE 'rig_open|gpu_open|job_open|hard\.h' tests/unit/test_*.c tests/hard/hard_*.c); do
+    name=$(basename "$source" .c)
+    case " $left_out " in *" $name "*) continue ;; esac
+    cp "$build/tests/$name" "$stage/bin"
+done
+cp "$build/ssdo-filter" "$build/tests/gpu/compare" "$build/tests/bench/make_input" "$stage/bin"
+sh tests/dist/libraries.sh "$stage/lib" "$stage"/bin/*
+for f in "$stage"/bin/*; do
+    strip "$f"
+    patchelf --set-rpath '$ORIGIN/../lib' "$f"
+done
+for f in samples/*.exr; do case $f in *[!l]_truth.exr) ;; *) cp "$f" "$stage/samples" ;; esac; done
+cp samples/*.obj samples/*.mtl "$stage/samples"
+cp -r samples/proxies "$stage/samples"
+cp tests/gpu/run.sh tests/gpu/cases.txt LICENSE "$stage"
+echo "$left_out" >"$stage/left-out"
+"$build/ssdo-filter" --version >"$stage/version"
+
+# What this machine's software renderer makes of the samples.
+(cd "$stage" && grep -v '^#' cases.txt | while read -r name arguments; do
+    bin/ssdo-filter $arguments -q --keep none -o "recorded/$name.exr" 2>/dev/null || { echo "gpu-bundle: $name" >&2; exit 1; }
+done)
+tar -C "$build" --sort=name --owner=0 --group=0 -c gpu-bundle | xz -9 >"$build/gpu-bundle.tar.xz"
+size=$(stat -c %s "$build/gpu-bundle.tar.xz")
+echo "gpu-bundle: $build/gpu-bundle.tar.xz, $((size / 1000)) kB, $(ls "$stage/bin" | wc -l) programs, $(ls "$stage/recorded" | wc -l) recorded pictures"
+[ "$size" -le 26214400 ]
