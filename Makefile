@@ -224,6 +224,12 @@ gpu-bundle: deps-check
 	@$(MAKE) $(JOBS) --no-print-directory all unit
 	@sh tests/gpu/make.sh $(BUILD)
 
+# The archive in bare Debian roots with Mesa's driver.
+.PHONY: check-gpu-bundle
+check-gpu-bundle: gpu-bundle
+	@sh tests/deps.sh debootstrap
+	@sh tests/gpu/check.sh $(BUILD)/gpu-bundle.tar.xz bookworm trixie
+
 LISTS     := $(BUILD)/tests/list_variants
 $(LISTS): $(BUILD)/tests/limits/list_variants.o $(BUILD)/libssdo.a
 	@mkdir -p $(@D)

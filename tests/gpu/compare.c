@@ -1,5 +1,5 @@
-// compare A.exr B.exr RMS: how far the layers of two files lie apart, over the channels that both have. Exits 1 when the root mean square
-// of a layer is above RMS or a picture is not of the same size.
+// compare A.exr B.exr RMS: how far the layers of two files lie apart, over the channels that both have. Exits 1 when the root
+// mean square of a layer is above RMS or a picture is not of the same size.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
