@@ -86,6 +86,7 @@ static void check_sample(struct json_object *entry)
     assert_string_equal(r.convention, "blender");
     assert_int_equal(g.depth_kind, DEPTH_PLANAR);
     assert_false(g.normals_from_depth || g.position_is_camera_space);
+    if (gbuffer_doubt(&g)) fail_msg("%s: its %s is doubted", path, gbuffer_doubt(&g));
     assert_true(g.camera.has_world && g.camera.inliers > 0.99);
     assert_non_null(g.albedo);
     assert_non_null(g.coverage);

@@ -135,6 +135,7 @@ static void check_fact(const renderer_fact *f)
     const frame_result *original = &originals[f->cropped];
     assert_int_equal(r.gb.valid, original->gb.valid);
     assert_false(r.gb.normals_from_depth);
+    if (gbuffer_doubt(&r.gb)) fail_msg("%s, %s: its %s is doubted", f->expected, f->source, gbuffer_doubt(&r.gb));
     for (int l = LAYER_OCCLUSION; l <= LAYER_COMPOSITE; l++) {
         double rms, largest;
         compare(&r, original, (layer_id)l, &rms, &largest);
