@@ -1,6 +1,7 @@
-// Which way an orthographic camera looks. Its positions fit a scene and that scene's mirror image in depth equally well, and
-// where there is no depth channel only the normals tell: they fit the surfaces of both, but of one in the likelier reading. Where
-// even they do not, a world is taken to be right-handed, and that is said.
+// Which way an orthographic camera looks. Its positions fit a scene and that scene's mirror image in depth equally well. Where
+// there is no depth channel, positions in camera space lie in front of their origin, and the normals tell: they fit the surfaces
+// of both, but of one in the likelier reading. Where neither tells, or both say otherwise, that is said; a world is then taken to
+// be right-handed.
 #include <stdlib.h>
 
 #include "base/mem.h"
@@ -46,6 +47,23 @@ static int compare(const normal_choice *a, const normal_choice *b, double determ
     return by != 0 ? by : determinant < 0.0;
 }
 
+// Positions in camera space: the origin lies in the middle of the picture, and all surfaces well to one side of it. +1 or -1 for
+// a camera that looks to that side or away from it, 0 where it is no such space.
+static int side_of_origin(const build *b)
+{
+    const camera *c = &b->g->camera;
+    double x, y, low = INFINITY, high = -INFINITY;
+    vec3 origin = camera_from_world(c, v3(0, 0, 0));
+    if (!b->g->position_is_camera_space || !camera_project(c, v3(origin.x, origin.y, 1.0), &x, &y)) return 0;
+    if (fabs(x - 0.5 * b->g->width) > 0.5 || fabs(y - 0.5 * b->g->height) > 0.5) return 0;
+    for (size_t i = 0; i < b->point_count; i++) {
+        double z = camera_from_world(c, b->points[i].world).z - origin.z;
+        low = fmin(low, z), high = fmax(high, z);
+    }
+    if (low > 0.1 * high) return 1;
+    return high < 0.1 * low ? -1 : 0;
+}
+
 bool orthographic_settle(build *b)
 {
     camera *c = &b->g->camera;
@@ -63,6 +81,11 @@ bool orthographic_settle(build *b)
         free(v);
         if (!ok) return false;
         worse = compare(&as_it_is, &turned, determinant, &clear);
+    }
+    int side = side_of_origin(b);
+    if (side != 0) {
+        clear = !clear || worse == 0 || (worse > 0) == (side < 0);
+        worse = -side;
     }
     if (worse > 0) turn_round(c);
     b->g->position_verdict.doubtful = b->g->position_verdict.doubtful || !clear;

@@ -112,18 +112,22 @@ static void away_from_edges(const gbuffer *g, unsigned char *mask)
         }
 }
 
+static double rms_away(const readings *r, const reading_case *c, const frame_result *out)
+{
+    const frame_result *plain = &r->plain[c->scene][c->normal != ABSENT];
+    unsigned char mask[READING_WIDTH * READING_HEIGHT];
+    away_from_edges(&plain->gb, mask);
+    return hard_compare(plain, out, LAYER_OCCLUSION, mask).rms;
+}
+
 // rms over the surfaces of both, of a filtered file away from outlines, where it holds what no renderer's closest sample does; 1
 // if more than a fiftieth of the plain file's surfaces is missing.
 static double rms_of(const readings *r, const reading_case *c, const frame_result *out)
 {
     const frame_result *plain = &r->plain[c->scene][c->normal != ABSENT];
-    unsigned char mask[READING_WIDTH * READING_HEIGHT];
     difference d = hard_compare(plain, out, LAYER_OCCLUSION, NULL);
-    if (50 * d.count >= 49 * plain->gb.valid && c->filter != FILTER_CLOSEST) {
-        away_from_edges(&plain->gb, mask);
-        return hard_compare(plain, out, LAYER_OCCLUSION, mask).rms;
-    }
-    return 50 * d.count < 49 * plain->gb.valid ? 1.0 : d.rms;
+    if (50 * d.count < 49 * plain->gb.valid) return 1.0;
+    return c->filter != FILTER_CLOSEST ? rms_away(r, c, out) : d.rms;
 }
 
 static outcome judge(readings *r, const reading_case *c, double *rms)
@@ -221,41 +225,51 @@ static void every_combination(void **state)
                names[t], tallies[t]->all, of[RIGHT], of[DOUBTED], of[WARNED], of[REFUSED], of[SILENT]);
         assert_int_equal(of[SILENT], 0);
     }
-    assert_true(100 * closest.of[RIGHT] >= 95 * closest.all);
-    assert_true(50 * closest.of[DOUBTED] <= closest.all);
+    int right = closest.of[RIGHT] + open.of[RIGHT], doubtful = closest.of[DOUBTED] + open.of[DOUBTED];
+    assert_int_equal(closest.of[RIGHT], closest.all);
+    assert_true(100 * right >= 95 * (closest.all + open.all));
+    assert_true(!hard_whole() || 50 * doubtful <= right + doubtful);
 }
 
-// Filtered passes against closest ones, positions and encoded normals in world space.
+// Filtered passes against closest ones, positions and encoded normals in world space. What can be asked of them is measured by a
+// closest pass sampled a fifth of a pixel off the centres: `occlusion` depends on what the pixels of an outline hold.
 static void filtered_against_closest(void **state)
 {
     static const char *const scenes[] = {"flat", "round", "bumpy", "facets", "clutter, orthographic"};
-    static const char *const filters[] = {"closest", "box, 1 pixel", "Gauss, 3 pixels", "Lanczos, 4 pixels"};
+    static const char *const filters[] = {"closest, 0.2 pixels aside", "box, 1 pixel", "Gauss, 3 pixels", "Lanczos, 4 pixels"};
     readings *r = *state;
     FILE *t = hard_table("80-filtered",
                          "**Filtered passes** (P, and N as 0..1, 128 x 96) against closest ones: rms change of `occlusion`, "
-                         "everywhere and further than 3 pixels from outlines");
+                         "everywhere and further than 3 pixels from outlines; beside them closest ones sampled a fifth of a "
+                         "pixel off the centres");
     hard_cell(t, "| scene | filter | everywhere | away from outlines |\n| --- | --- | --- | --- |\n");
-    double worst = 0.0;
+    double worst = 0.0, most = 0.0, aside = 0.0;
     for (int s = 0; s < READING_SCENES; s++)
-        for (int f = FILTER_BOX; f < READING_FILTERS; f++) {
-            if (!hard_whole() && !t && (s + f) % 4) continue; // the share of the fast subset
+        for (int f = FILTER_CLOSEST; f < READING_FILTERS; f++) {
+            if (!hard_whole() && !t && f != FILTER_CLOSEST && (s + f) % 4) continue; // the share of the fast subset
             const reading_case c = {.scene = (reading_scene)s,
                                     .position = WORLD,
                                     .normal = WORLD,
                                     .encoding = NORMAL_UNORM,
-                                    .filter = (reading_filter)f};
+                                    .filter = (reading_filter)f,
+                                    .aside = f == FILTER_CLOSEST};
             frame_result out;
             error e = {0};
             must(run_case(r, &c, &out, &e), &e);
-            assert_true(warned_of_geometry(r) && !out.gb.normals_from_depth);
-            double away = rms_of(r, &c, &out), all = hard_compare(&r->plain[s][1], &out, LAYER_OCCLUSION, NULL).rms;
+            assert_true(!out.gb.normals_from_depth && (f == FILTER_CLOSEST || warned_of_geometry(r)));
+            double all = hard_compare(&r->plain[s][1], &out, LAYER_OCCLUSION, NULL).rms, away = rms_away(r, &c, &out);
             hard_cell(t, "| %s | %s | %.4f | %.4f |\n", scenes[s], filters[f], all, away);
-            worst = fmax(worst, away);
             frame_free(&out);
+            if (f == FILTER_CLOSEST)
+                aside = all;
+            else
+                worst = fmax(worst, away), most = fmax(most, all / aside);
         }
     hard_table_end(t);
-    printf("figure: filtered positions and encoded normals: at most %.4f rms off the closest ones away from outlines\n", worst);
-    assert_true(worst < 0.1); // as encoded normals taken as they are: .15
+    printf("figure: filtered positions and encoded normals: at most %.4f rms off the closest ones away from outlines; everywhere "
+           "at most %.2f times what a fifth of a pixel does\n",
+           worst, most);
+    assert_true(worst < 0.04 && most < 2.0);
 }
 
 int main(void)

@@ -172,7 +172,7 @@ static double kernel(reading_filter f, double x)
 
 static void pixel(const master *m, const reading_case *c, int x, int y, double out[CHANNELS])
 {
-    int cx = x * FINE + FINE / 2, cy = y * FINE + FINE / 2, reach = c->filter == FILTER_CLOSEST ? 0 : REACH * FINE;
+    int cx = x * FINE + FINE / 2 + c->aside, cy = y * FINE + FINE / 2, reach = c->filter == FILTER_CLOSEST ? 0 : REACH * FINE;
     double sum = 0.0, one[CHANNELS];
     if (reach == 0) {
         sample(m, c, (size_t)cy * FW + (size_t)cx, out);

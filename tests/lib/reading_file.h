@@ -28,6 +28,7 @@ typedef struct reading_case {
     depth_kind depth; // DEPTH_AUTO: none
     bool negative_depth;
     reading_filter filter;
+    int aside; // closest: sampled so many fifths of a pixel to the right of its centre
     reading_layout layout;
     bool half_normals;
 } reading_case;
