@@ -204,10 +204,23 @@ static void doubt(build *b, const char *why)
              why, b->g->depth_verdict.reading);
 }
 
+// Where the background is 0, as 1 / z has it, and no witness speaks, nearer may be larger.
+static void question_direction(build *b, const values *s, const trial *best, bool confirmed)
+{
+    bool open = 100 * s->zero > s->looked_at && s->beyond > 0 && s->negative == 0;
+    if (confirmed || !open || best->code.kind > DEPTH_RADIAL || b->g->camera.kind != CAMERA_PERSPECTIVE) return;
+    b->g->depth_verdict.doubtful = true;
+    log_warn(b->log, "depth-doubt",
+             "the depth is 0 where there is nothing, as 1 / z is, and neither normals nor planes confirm a kind; it is taken as "
+             "%s (--depth-kind says what it is)",
+             b->g->depth_verdict.reading);
+}
+
 // Values within 0..1 may be distances of a small scene, or no distances at all.
 static bool question(build *b, const values *s, const trial *best, bool confirmed, bool range)
 {
     bool unit = s->beyond == 0 && s->negative == 0 && s->within > 0, ones = 2000 * s->one > s->looked_at;
+    question_direction(b, s, best, confirmed);
     if (!unit || best->code.kind == DEPTH_INVERSE || depth_needs_range(best->code.kind)) return true;
     if (confirmed && ones)
         doubt(b, "1 stands for nothing: its unit may be the distance of the far plane, in which radii are then measured");

@@ -51,6 +51,19 @@ said "--depth-range" unit
 "$SSDO" "$dir/half.exr" --fov 40 -o "$dir/out5.exr" --layers occlusion >"$dir/said" 2>&1 || die half
 said "depth is stored as half floats" half
 
+# Without normals, planes and a background that is far away it may be 1 / z.
+for empty in 0 1e10; do
+    oiiotool --pattern constant:color=$empty 120x80 1 --pattern noise:type=uniform:min=3:max=4:seed=1:mono=1 100x60 1 \
+        --paste +10+10 --chnames Z -d float -o "$dir/open_$empty.exr" || die "open $empty"
+done
+"$SSDO" "$dir/open_0.exr" --fov 40 -o "$dir/out6.exr" --layers occlusion --strict >"$dir/said" 2>&1
+[ $? = 7 ] && [ ! -e "$dir/out6.exr" ] || die "a depth that may be 1 / z under --strict"
+said "--depth-kind" "1 / z"
+"$SSDO" "$dir/open_0.exr" --fov 40 --depth-kind inverse --explain >"$dir/said" 2>&1 || die "told that it is 1 / z"
+grep -q "as 1 / z is" "$dir/said" && die "doubt of what was told"
+"$SSDO" "$dir/open_1e10.exr" --fov 40 --explain >"$dir/said" 2>&1 || die "a background far away"
+grep -q "as 1 / z is" "$dir/said" && die "doubt of a depth whose background is far away"
+
 # For machines.
 "$SSDO" "$dir/wild/encoded.exr" --explain=json >"$dir/said" || die json
 python3 -c '
