@@ -6,7 +6,7 @@
 const knob knobs[] = {
     {.name = "SSDO_SHADER_DIR", .pixels = true, .path = true}, // shaders from a folder
     {.name = "SSDO_TILE", .pixels = true},                     // side of the GPU's tiles
-    {.name = "SSDO_READ", .pixels = true},                     // how shaders read pictures
+    {.name = "SSDO_READ"},                                     // how shaders read pictures: the same values either way
     {.name = "SSDO_DRAW", .pixels = true},                     // whether passes draw or compute
     {.name = "SSDO_FAIL_ALLOC", .pixels = true},               // the allocation that fails
     {.name = "SSDO_TRANSFER"},                                 // how pictures come back from the GPU

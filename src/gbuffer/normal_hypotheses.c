@@ -260,7 +260,8 @@ static double median_cosine(const search *s, const reading *r)
     return 0.0;
 }
 
-// Correlation of both about their means. *scatter: of the normals, over that of the surfaces.
+// Correlation of both about their means. *scatter: of the normals, over that of the surfaces. A normal that looks away is that of
+// a surface seen from its back, and is turned when it is read (normals.c).
 static double follows(const search *s, const reading *r, double *scatter)
 {
     vec3 n = {0}, d = {0};
@@ -270,6 +271,7 @@ static double follows(const search *s, const reading *r, double *scatter)
         vec3 unit = s->decoded[r->encoding].unit[i];
         if (!(v3_dot(unit, unit) > 0.5)) continue;
         unit = m3_apply(r->to_camera, unit);
+        if (v3_dot(unit, s->v->surface[i]) < 0.0) unit = v3_scale(unit, -1.0);
         double w = s->v->weight[i];
         weight += w;
         n = v3_add(n, v3_scale(unit, w)), d = v3_add(d, v3_scale(s->v->surface[i], w));

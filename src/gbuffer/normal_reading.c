@@ -78,7 +78,7 @@ static void drop_unusable(evidence *v)
 {
     size_t n = 0;
     for (size_t i = 0; i < v->count; i++) {
-        if (!v3_finite(v->stored[i])) continue;
+        if (!v3_finite(v->stored[i]) || v3_length(v->stored[i]) == 0.0) continue;
         v->stored[n] = v->stored[i], v->surface[n] = v->surface[i], v->weight[n++] = v->weight[i];
     }
     v->count = n;
