@@ -5,8 +5,8 @@
 #include "base/mem.h"
 #include "gpu/gpu.h"
 
-// On hardware a tile of 512 pixels a side at up to 256 samples a pixel, half of that at four times as many: the march of such a
-// tile takes 3 ms on a GPU of a data centre, so one fifteen times as slow stays below 50 ms.
+// On hardware a tile of 512 pixels a side at up to 256 samples a pixel, half of that at four times as many: by
+// estimate the march of such a tile takes 3 ms on a GPU of a data centre, so one fifteen times as slow stays below 50 ms.
 static int hardware_size(int samples)
 {
     enum { LARGEST = 512, SAMPLES = 256 };

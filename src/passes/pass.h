@@ -88,8 +88,7 @@ typedef struct pass_context {
     log_t *log;
     bool timing; // measure: waits for the GPU after every pass
     int threads;
-    const volatile int
-        *stop; // borrowed, may be NULL: once it is not zero, no further tile is worked on, and the frame will be dropped
+    const volatile int *stop; // borrowed, may be NULL: not zero once the frame will be dropped; then no further tile is begun
     pass_settings set;
     bool want_diffuse; // the composite pass also writes the diffuse layer
     bool want_bent;
