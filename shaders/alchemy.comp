@@ -2,7 +2,7 @@
 // Alchemy obscurance (McGuire et al. 2011): S = (2 pi c / n) sum max(0, N.w - bias) H(R - |w|) / max(c^2, w.w), c = 0.1 R,
 // A = max(0, 1 - scale S)^contrast. Taps on a spiral over the projected disc, uniform in radius and angle, a golden section of a turn
 // apart (the chapter's 7 / 9 of a turn puts them on nine spokes, however many they are). This pass stores 1 - S;
-// look.comp makes A of it after the blur, for filters act on linear quantities (README, correction 9).
+// tone.comp makes A of it after the blur, for filters act on linear quantities (README, correction 9).
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
 

@@ -4,7 +4,7 @@
 //   occlusion = sum w (open share) / sum w                          so that an empty plane is exactly 1
 //   BENT:   bent = 2/3 N - sum w (blocked directions) / sum w        the cosine-weighted mean open direction: N on an empty plane
 //   LIGHT:  radiance = sum w (open share x environment) / sum w,  visibility = its luminance over that of the open sky
-//   CHANGE: how much the second half of the slices (every other one) moved the occlusion
+//   HALF_DIFFERENCE: how much the second half of the slices (every other one) moved the occlusion
 //   ROUND:  the sums go on from those of an earlier round of as many slices, between which these fall; together they are one set
 //   BOUNCE: indirect = sum w (blocked share x what the nearest blocker sends) / sum w; with EXITANT the sender is a picture that the
 //           renderer lit, else light that the senders' albedo is still to be multiplied by
@@ -34,8 +34,8 @@ layout(rgba32f) writeonly uniform image2D indirect_image;
 PICTURE(rgba32f, albedo_image);
 #endif
 #endif
-#ifdef CHANGE
-layout(r32f) writeonly uniform image2D change_image; // of the occlusion, by half of the slices
+#ifdef HALF_DIFFERENCE
+layout(r32f) writeonly uniform image2D half_difference_image; // of the occlusion, by half of the slices
 #endif
 #ifdef ROUND
 layout(rg32f) uniform image2D sums_image; // of earlier rounds: sum w (open share), sum w
@@ -89,8 +89,8 @@ void main() {
     float depth = depth_at(p);
     if (depth == 0.0) {
         store(p, 1.0, vec3(0.0), vec3(0.0));
-#ifdef CHANGE
-        imageStore(change_image, p, vec4(0.0));
+#ifdef HALF_DIFFERENCE
+        imageStore(half_difference_image, p, vec4(0.0));
 #endif
         return;
     }
@@ -145,7 +145,7 @@ void main() {
 #endif
         open += weight * (1.0 - sector_share(slots.blocked));
         all += weight;
-#ifdef CHANGE
+#ifdef HALF_DIFFERENCE
         bool first = (i & 1) == 0 && params.before == 0;
         first_open += first ? weight * (1.0 - sector_share(slots.blocked)) : 0.0;
         first_all += first ? weight : 0.0;
@@ -174,7 +174,7 @@ void main() {
 #ifdef ROUND
     imageStore(sums_image, p, vec4(open, all, 0.0, 0.0));
 #endif
-#ifdef CHANGE
-    imageStore(change_image, p, vec4(ratio(open, all) - ratio(first_open, first_all)));
+#ifdef HALF_DIFFERENCE
+    imageStore(half_difference_image, p, vec4(ratio(open, all) - ratio(first_open, first_all)));
 #endif
 }

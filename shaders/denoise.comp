@@ -1,6 +1,6 @@
 #version 450 core
 // A filter that knows the noise it is to remove. From the edge-aware means (include/bilateral.glsl) over a window of the estimate m,
-// of its `change` c when the other half of the slices came in, and of their squares it takes
+// of its `half_difference` c when the other half of the slices came in, and of their squares it takes
 //   S = mean(m^2) - mean(m)^2   the variance in the window, of noise and of the picture
 //   v = mean(c^2)              the variance of the noise: exactly that if the halves are independent, less if they are stratified
 //   g = max(0, S - v) / S       the share of the picture in it
@@ -15,7 +15,7 @@
 #include "params/denoise.glsl"
 
 PICTURE(r32f, estimate_image);
-PICTURE(r32f, change_image);
+PICTURE(r32f, half_difference_image);
 #ifdef ACROSS
 TARGET(0, vec4, rgba32f, moments_out); // means of m, c, m^2, c^2
 const ivec2 STEP = ivec2(1, 0);
@@ -30,7 +30,7 @@ TARGET(1, float, r32f, error_out);
 
 vec4 moments_at(ivec2 q) {
 #ifdef ACROSS
-    float m = FETCH(estimate_image, q).r, c = FETCH(change_image, q).r;
+    float m = FETCH(estimate_image, q).r, c = FETCH(half_difference_image, q).r;
     return vec4(m, c, m * m, c * c);
 #else
     return FETCH(moments_image, q);
@@ -62,7 +62,7 @@ void denoise(ivec2 p) {
     float g = S > 0.0 ? seen / S : 0.0;
     PUT(result_out, p, depth == 0.0 ? m : mix(mean.x, m, g));
 #ifdef ERRORS
-    float change = mix(mean.y, FETCH(change_image, p).r, g);
+    float change = mix(mean.y, FETCH(half_difference_image, p).r, g);
     PUT(error_out, p, depth == 0.0 ? 0.0 : change * change + (1.0 - g) * (1.0 - g) * seen);
 #endif
 #endif

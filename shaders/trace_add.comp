@@ -21,7 +21,7 @@ void main() {
     imageStore(occlusion_image, p, imageLoad(occlusion_image, p) + vec4(open));
 #ifdef LIGHT
     vec3 all = gains[i].rgb, light = h.triangle == HIT_NOTHING ? all : vec3(0.0);
-    if (params.choices.x > 0) {
+    if (params.alias_table.x > 0) {
         uint j = batch_size() + i;
         all += gains[j].rgb;
         if (hits[j].triangle == HIT_NOTHING) light += gains[j].rgb;

@@ -6,7 +6,7 @@
 #include "include/environment.glsl"
 #include "include/trace.glsl"
 #include "include/triangles.glsl"
-#include "include/choices.glsl"
+#include "include/alias_table.glsl"
 
 layout(std430) readonly buffer Rays { Ray rays[]; };
 layout(std430) readonly buffer Hits { Hit hits[]; };
@@ -28,7 +28,7 @@ void bounce(ivec2 p, uint i, Ray r, Hit h) {
     float lift = lift_of(t, at);
     vec3 w = tangent_frame(normal) * cosine_direction(numbers_of(p, 0u).xy);
     send(i, at, face, lift, normal, w, to_map(w), albedo);
-    if (!has_choices()) return;
+    if (!has_alias_table()) return;
     vec3 bright = choose_direction(numbers_of(p, 1u));
     send(batch_size() + i, at, face, lift, normal, from_map(bright), bright, albedo);
 }

@@ -13,6 +13,6 @@ void main() {
     ivec2 p = pixel_of(i);
     vec3 light = hits[i].triangle == HIT_NOTHING ? gains[i].rgb : vec3(0.0);
     uint j = batch_size() + i;
-    if (params.choices.x > 0 && hits[j].triangle == HIT_NOTHING) light += gains[j].rgb;
+    if (params.alias_table.x > 0 && hits[j].triangle == HIT_NOTHING) light += gains[j].rgb;
     imageStore(indirect_image, p, imageLoad(indirect_image, p) + vec4(light, 0.0));
 }

@@ -10,7 +10,7 @@ PICTURE(rgba32f, point_image); // trace_points.comp
 PICTURE(rgba32f, face_image);
 layout(std430) writeonly buffer Rays { Ray rays[]; };
 #ifdef LIGHT
-#include "include/choices.glsl"
+#include "include/alias_table.glsl"
 layout(std430) writeonly buffer Gains { vec4 gains[]; };
 #endif
 
@@ -28,7 +28,7 @@ void main() {
 #endif
 #ifdef LIGHT
     gains[i] = vec4(light_from(to_map(w), dot(N, w)), 0.0);
-    if (!has_choices()) return;
+    if (!has_alias_table()) return;
     vec3 bright = choose_direction(sequence3() + shift_of(p, 1u));
     w = from_map(bright);
     uint j = batch_size() + i;

@@ -126,7 +126,7 @@ static bool tell(const options *o, bool *ok, error *e)
     else if (o->list_devices)
         list_devices();
     else if (o->explain)
-        *ok = exr_library_check(e) && explain_write(o, stdout, e);
+        *ok = exrio_library_check(e) && explain_write(o, stdout, e);
     else
         return false;
     return true;
@@ -153,7 +153,7 @@ int main(int argc, char **argv)
     if (told) return finish_output(&e) && ok ? 0 : fail(&o, &e);
     log_t log;
     log_init(&log, o.quiet ? LOG_QUIET : o.verbose ? LOG_INFO : LOG_WARN);
-    ok = exr_library_check(&e) && run(&o, stop_signal, &log, &e);
+    ok = exrio_library_check(&e) && run(&o, stop_signal, &log, &e);
     log_free(&log);
     if (*stop_signal) return 128 + *stop_signal;
     return ok ? 0 : fail(&o, &e);

@@ -7,5 +7,5 @@ PARAMS(trace_params) {
     int sample_index;
     int samples; // of all rounds
     int unused0, unused1;
-    ivec4 choices; // width, height of the environment's table
+    ivec4 alias_table; // width, height of the environment's table
 } END_PARAMS(trace_params)

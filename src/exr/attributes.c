@@ -4,20 +4,20 @@
 #include "exr/internal.h"
 #include "exr/write.h"
 
-static const exr_attribute_t *find(const exr_file *file, int part, const char *name)
+static const exr_attribute_t *find(const exrio_file *file, int part, const char *name)
 {
     const exr_attribute_t *a = NULL;
-    file = exr_part_file(file, &part);
+    file = exrio_part_file(file, &part);
     if (exr_get_attribute_by_name(file->core, part, name, &a) != EXR_ERR_SUCCESS) return NULL;
     return a;
 }
 
-bool exr_attr_exists(const exr_file *file, int part, const char *name) { return find(file, part, name) != NULL; }
+bool exrio_attr_exists(const exrio_file *file, int part, const char *name) { return find(file, part, name) != NULL; }
 
-bool exr_attr_begins(const exr_file *file, int part, const char *beginning, size_t n)
+bool exrio_attr_begins(const exrio_file *file, int part, const char *beginning, size_t n)
 {
     int32_t count = 0;
-    file = exr_part_file(file, &part);
+    file = exrio_part_file(file, &part);
     if (exr_get_attribute_count(file->core, part, &count) != EXR_ERR_SUCCESS) return false;
     for (int32_t i = 0; i < count; i++) {
         const exr_attribute_t *a = NULL;
@@ -27,7 +27,7 @@ bool exr_attr_begins(const exr_file *file, int part, const char *beginning, size
     return false;
 }
 
-bool exr_attr_string(const exr_file *file, int part, const char *name, const char **value)
+bool exrio_attr_string(const exrio_file *file, int part, const char *name, const char **value)
 {
     const exr_attribute_t *a = find(file, part, name);
     if (!a || a->type != EXR_ATTR_STRING) return false;
@@ -35,7 +35,7 @@ bool exr_attr_string(const exr_file *file, int part, const char *name, const cha
     return true;
 }
 
-int exr_attr_strings(const exr_file *file, int part, const char *name, const char **values, int most)
+int exrio_attr_strings(const exrio_file *file, int part, const char *name, const char **values, int most)
 {
     const exr_attribute_t *a = find(file, part, name);
     if (!a || a->type != EXR_ATTR_STRING_VECTOR) return 0;
@@ -44,7 +44,7 @@ int exr_attr_strings(const exr_file *file, int part, const char *name, const cha
     return n;
 }
 
-bool exr_attr_float(const exr_file *file, int part, const char *name, double *value)
+bool exrio_attr_float(const exrio_file *file, int part, const char *name, double *value)
 {
     const exr_attribute_t *a = find(file, part, name);
     if (!a) return false;
@@ -63,7 +63,7 @@ bool exr_attr_float(const exr_file *file, int part, const char *name, double *va
     }
 }
 
-bool exr_attr_m44(const exr_file *file, int part, const char *name, double m[4][4])
+bool exrio_attr_m44(const exrio_file *file, int part, const char *name, double m[4][4])
 {
     const exr_attribute_t *a = find(file, part, name);
     if (!a || (a->type != EXR_ATTR_M44F && a->type != EXR_ATTR_M44D)) return false;
@@ -79,7 +79,7 @@ bool exr_attr_m44(const exr_file *file, int part, const char *name, double m[4][
     return true;
 }
 
-bool exr_attr_v2(const exr_file *file, int part, const char *name, double v[2])
+bool exrio_attr_v2(const exrio_file *file, int part, const char *name, double v[2])
 {
     const exr_attribute_t *a = find(file, part, name);
     if (!a || a->type != EXR_ATTR_V2F) return false;
@@ -88,10 +88,10 @@ bool exr_attr_v2(const exr_file *file, int part, const char *name, double v[2])
     return true;
 }
 
-bool exr_attr_chromaticities(const exr_file *file, int part, double xy[8])
+bool exrio_attr_chromaticities(const exrio_file *file, int part, double xy[8])
 {
     static const char *const name = "chromaticities";
-    const exr_attribute_t *a = find(file, exr_attr_part(file, part, name), name);
+    const exr_attribute_t *a = find(file, exrio_attr_part(file, part, name), name);
     if (!a || a->type != EXR_ATTR_CHROMATICITIES) return false;
     const exr_attr_chromaticities_t *c = a->chromaticities;
     const double all[8] = {(double)c->red_x,  (double)c->red_y,  (double)c->green_x, (double)c->green_y,
@@ -100,7 +100,7 @@ bool exr_attr_chromaticities(const exr_file *file, int part, double xy[8])
     return true;
 }
 
-bool exr_attr_structural(const char *name)
+bool exrio_attr_structural(const char *name)
 {
     static const char *const structural[] = {"channels",
                                              "chunkCount",
@@ -121,14 +121,14 @@ bool exr_attr_structural(const char *name)
     return false;
 }
 
-static bool is_ours(const char *name, const exr_out_attr *ours, int count)
+static bool is_ours(const char *name, const exrio_out_attr *ours, int count)
 {
     for (int i = 0; i < count; i++)
         if (strcmp(name, ours[i].name) == 0) return true;
     return false;
 }
 
-size_t exr_attr_value_size(int type)
+size_t exrio_attr_value_size(int type)
 {
     switch (type) {
     case EXR_ATTR_BOX2I:
@@ -212,7 +212,7 @@ static exr_result_t borrow(exr_context_t to, int part, const exr_attribute_t *so
     exr_result_t rv = exr_attr_declare_by_type(to, part, source->name, source->type_name, &a);
     if (rv != EXR_ERR_SUCCESS) return rv;
     if (a->type != source->type) return EXR_ERR_ATTR_TYPE_MISMATCH;
-    size_t size = exr_attr_value_size((int)a->type);
+    size_t size = exrio_attr_value_size((int)a->type);
     if (size)
         memcpy(a->rawptr, source->rawptr, size);
     else
@@ -221,28 +221,28 @@ static exr_result_t borrow(exr_context_t to, int part, const exr_attribute_t *so
     return EXR_ERR_SUCCESS;
 }
 
-bool exr_attr_source(const exr_out_part *p, int number, exr_source *out)
+bool exrio_attr_source(const exrio_out_part *p, int number, exrio_source *out)
 {
     int first = p->attributes_from != NULL;
     if (number >= first + p->also_count) return false;
-    *out = first && number == 0 ? (exr_source){p->attributes_from, p->attributes_part} : p->also[number - first];
+    *out = first && number == 0 ? (exrio_source){p->attributes_from, p->attributes_part} : p->also[number - first];
     return true;
 }
 
 // An earlier source has the name.
-static bool is_taken(const exr_out_part *p, int before, const char *name)
+static bool is_taken(const exrio_out_part *p, int before, const char *name)
 {
-    exr_source s;
-    for (int i = 0; i < before && exr_attr_source(p, i, &s); i++)
-        if (exr_attr_exists(s.file, s.part, name)) return true;
+    exrio_source s;
+    for (int i = 0; i < before && exrio_attr_source(p, i, &s); i++)
+        if (exrio_attr_exists(s.file, s.part, name)) return true;
     return false;
 }
 
-exr_result_t exr_attr_copy_all(exr_context_t to, int part, const exr_out_part *p)
+exr_result_t exrio_attr_copy_all(exr_context_t to, int part, const exrio_out_part *p)
 {
     exr_result_t rv = EXR_ERR_SUCCESS;
-    exr_source s;
-    for (int n = 0; rv == EXR_ERR_SUCCESS && exr_attr_source(p, n, &s); n++) {
+    exrio_source s;
+    for (int n = 0; rv == EXR_ERR_SUCCESS && exrio_attr_source(p, n, &s); n++) {
         int32_t count = 0;
         rv = exr_get_attribute_count(s.file->core, s.part, &count);
         for (int32_t i = 0; rv == EXR_ERR_SUCCESS && i < count; i++) {
@@ -250,7 +250,7 @@ exr_result_t exr_attr_copy_all(exr_context_t to, int part, const exr_out_part *p
             rv = exr_get_attribute_by_index(s.file->core, s.part, EXR_ATTR_LIST_FILE_ORDER, i, &a);
             if (rv != EXR_ERR_SUCCESS) break;
             // A second channel list under another name would say nothing about the new file, and the library cannot lend one.
-            if (exr_attr_structural(a->name) || a->type == EXR_ATTR_CHLIST || is_taken(p, n, a->name) ||
+            if (exrio_attr_structural(a->name) || a->type == EXR_ATTR_CHLIST || is_taken(p, n, a->name) ||
                 is_ours(a->name, p->attributes, p->attribute_count))
                 continue;
             rv = borrow(to, part, a);
@@ -259,10 +259,10 @@ exr_result_t exr_attr_copy_all(exr_context_t to, int part, const exr_out_part *p
     return rv;
 }
 
-int exr_attr_part(const exr_file *file, int part, const char *name)
+int exrio_attr_part(const exrio_file *file, int part, const char *name)
 {
-    if (exr_attr_exists(file, part, name)) return part;
+    if (exrio_attr_exists(file, part, name)) return part;
     for (int i = 0; i < file->part_count; i++)
-        if (strcmp(file->parts[i].view, file->parts[part].view) == 0 && exr_attr_exists(file, i, name)) return i;
+        if (strcmp(file->parts[i].view, file->parts[part].view) == 0 && exrio_attr_exists(file, i, name)) return i;
     return part;
 }

@@ -5,7 +5,7 @@
 
 #include "exr/deep.h"
 
-static const exr_attribute_t *find(const exr_file *file, int part, const char *name)
+static const exr_attribute_t *find(const exrio_file *file, int part, const char *name)
 {
     const exr_attribute_t *a = NULL;
     return exr_get_attribute_by_name(file->core, part, name, &a) == EXR_ERR_SUCCESS ? a : NULL;
@@ -56,7 +56,7 @@ static bool same_value(const exr_attribute_t *a, const exr_attribute_t *b)
     case EXR_ATTR_LINEORDER:
         return a->uc == b->uc;
     default: {
-        size_t size = exr_attr_value_size((int)a->type);
+        size_t size = exrio_attr_value_size((int)a->type);
         return size > 0 && memcmp(a->rawptr, b->rawptr, size) == 0;
     }
     }
@@ -65,21 +65,21 @@ static bool same_value(const exr_attribute_t *a, const exr_attribute_t *b)
 static bool counts(const exr_attribute_t *a)
 {
     if (strcmp(a->name, "screenWindowCenter") == 0 || strcmp(a->name, "screenWindowWidth") == 0) return true;
-    return !exr_attr_structural(a->name) && a->type != EXR_ATTR_CHLIST && strncmp(a->name, "ssdo/", 5) != 0;
+    return !exrio_attr_structural(a->name) && a->type != EXR_ATTR_CHLIST && strncmp(a->name, "ssdo/", 5) != 0;
 }
 
-static bool is_earlier(const exr_source *sources, int before, const char *name)
+static bool is_earlier(const exrio_source *sources, int before, const char *name)
 {
     for (int i = 0; i < before; i++)
         if (find(sources[i].file, sources[i].part, name)) return true;
     return false;
 }
 
-const char *exr_attributes_differ(const exr_source *sources, int count, const exr_file *out, int part)
+const char *exrio_attributes_differ(const exrio_source *sources, int count, const exrio_file *out, int part)
 {
     for (int s = 0; s < count; s++) {
         int32_t n = 0;
-        const exr_file *from = sources[s].file;
+        const exrio_file *from = sources[s].file;
         if (exr_get_attribute_count(from->core, sources[s].part, &n) != EXR_ERR_SUCCESS) return "?";
         for (int32_t i = 0; i < n; i++) {
             const exr_attribute_t *a = NULL, *b;
@@ -93,7 +93,7 @@ const char *exr_attributes_differ(const exr_source *sources, int count, const ex
     return NULL;
 }
 
-bool exr_deep_same(const exr_file *a, int part_a, const exr_file *b, int part_b)
+bool exrio_deep_same(const exrio_file *a, int part_a, const exrio_file *b, int part_b)
 {
     const box2 w = a->parts[part_a].data_window;
     int32_t lines = 0, lines_b = 0;

@@ -43,7 +43,7 @@ __attribute__((target("avx,f16c"))) static size_t convert_f16c(const float *from
 }
 #endif
 
-size_t exr_to_half(const float *from, size_t stride, size_t n, uint16_t *to)
+size_t exrio_to_half(const float *from, size_t stride, size_t n, uint16_t *to)
 {
 #ifdef HAVE_F16C
     // Every processor with AVX2 has F16C, which clang 14 cannot ask for by name.

@@ -7,7 +7,7 @@
 static bool reserve(void **buffer, uint64_t *room, uint64_t n)
 {
     if (n <= *room) return true;
-    if (n > EXR_MAX_CHUNK_BYTES) return false;
+    if (n > EXRIO_MAX_CHUNK_BYTES) return false;
     void *grown = mem_grow(*buffer, (size_t)n, 1, NULL);
     if (!grown) return false;
     *buffer = grown;
@@ -31,7 +31,7 @@ void deep_free(deep_chunk *c)
     free(c->counts);
 }
 
-exr_result_t deep_copy(exr_context_t core, int index, const exr_out_part *p, int lines_per_chunk, int chunks, error *e)
+exr_result_t deep_copy(exr_context_t core, int index, const exrio_out_part *p, int lines_per_chunk, int chunks, error *e)
 {
     deep_chunk c = {0};
     exr_result_t rv = EXR_ERR_SUCCESS;

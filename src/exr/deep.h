@@ -16,6 +16,6 @@ void deep_free(deep_chunk *chunk);
 
 // Writes the chunks of a deep scanline part (p->attributes_from) to part `index` of `core` as they are stored. A chunk of the
 // input that cannot be read is ERR_INPUT naming that file.
-exr_result_t deep_copy(exr_context_t core, int index, const exr_out_part *p, int lines_per_chunk, int chunks, error *e);
+exr_result_t deep_copy(exr_context_t core, int index, const exrio_out_part *p, int lines_per_chunk, int chunks, error *e);
 
 #endif

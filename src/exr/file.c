@@ -17,7 +17,7 @@ static void keep_message(exr_const_context_t context, exr_result_t code, const c
     void *user = NULL;
     // Safe only for reading: a writing context would lock itself a second time here.
     if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user) return;
-    core_log *log = &((exr_reader *)user)->log;
+    core_log *log = &((exrio_reader *)user)->log;
     pthread_mutex_lock(&log->lock);
     if (log->armed && !log->text[0]) {
         strncpy(log->text, message, sizeof log->text - 1);
@@ -74,7 +74,7 @@ static void hide_deep_flag(uint8_t *bytes, uint64_t got, uint64_t offset)
 }
 
 // The part of the tables that lies in [offset, offset + got).
-static void put_restored(const exr_reader *r, uint8_t *bytes, uint64_t got, uint64_t offset)
+static void put_restored(const exrio_reader *r, uint8_t *bytes, uint64_t got, uint64_t offset)
 {
     uint64_t from = offset > r->tables ? offset : r->tables, end = r->tables + r->restored_size;
     uint64_t to = offset + got < end ? offset + got : end;
@@ -84,7 +84,7 @@ static void put_restored(const exr_reader *r, uint8_t *bytes, uint64_t got, uint
 static int64_t read_bytes(exr_const_context_t context, void *user, void *buffer, uint64_t size, uint64_t offset,
                           exr_stream_error_func_ptr_t report)
 {
-    const exr_reader *r = user;
+    const exrio_reader *r = user;
     size_t got = infile_read_at(r->fd, buffer, size, offset);
     hide_deep_flag(buffer, got, offset);
     if (r->restored) put_restored(r, buffer, got, offset);
@@ -96,10 +96,10 @@ static int64_t read_bytes(exr_const_context_t context, void *user, void *buffer,
 static int64_t file_size(exr_const_context_t context, void *user)
 {
     (void)context;
-    return (int64_t)((const exr_reader *)user)->size;
+    return (int64_t)((const exrio_reader *)user)->size;
 }
 
-static bool open_core(exr_reader *r, error *e)
+static bool open_core(exrio_reader *r, error *e)
 {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.error_handler_fn = keep_message;
@@ -108,8 +108,8 @@ static bool open_core(exr_reader *r, error *e)
     init.size_fn = file_size;
     init.alloc_fn = core_allocate;
     init.free_fn = core_free;
-    init.max_image_width = init.max_image_height = EXR_MAX_SIDE;
-    init.max_tile_width = init.max_tile_height = EXR_MAX_SIDE;
+    init.max_image_width = init.max_image_height = EXRIO_MAX_SIDE;
+    init.max_tile_width = init.max_tile_height = EXRIO_MAX_SIDE;
     // A file whose chunk table is incomplete lost its end; guessing where the chunks are would hide that.
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
     core_log_arm(&r->log);
@@ -124,13 +124,13 @@ static bool open_core(exr_reader *r, error *e)
     return true;
 }
 
-static bool check_window(const exr_file *file, const exr_part *p, error *e)
+static bool check_window(const exrio_file *file, const exrio_part *p, error *e)
 {
     int64_t w = (int64_t)p->data_window.x1 - p->data_window.x0 + 1, h = (int64_t)p->data_window.y1 - p->data_window.y0 + 1;
-    if (w >= 1 && h >= 1 && w <= EXR_MAX_SIDE && h <= EXR_MAX_SIDE && w * h <= EXR_MAX_PIXELS) return true;
+    if (w >= 1 && h >= 1 && w <= EXRIO_MAX_SIDE && h <= EXRIO_MAX_SIDE && w * h <= EXRIO_MAX_PIXELS) return true;
     return err_set(e, ERR_INPUT, file->path, NULL,
                    "has a data window of %lld x %lld pixels, beyond what is read (%d on a side, %d in all); crop it",
-                   (long long)w, (long long)h, EXR_MAX_SIDE, EXR_MAX_PIXELS);
+                   (long long)w, (long long)h, EXRIO_MAX_SIDE, EXRIO_MAX_PIXELS);
 }
 
 static int lines_per_chunk(int compression)
@@ -152,7 +152,7 @@ static int lines_per_chunk(int compression)
 }
 
 // The library computes with a chunk's size as an int.
-static bool check_chunk_size(const exr_file *file, int index, const exr_part *p, error *e)
+static bool check_chunk_size(const exrio_file *file, int index, const exrio_part *p, error *e)
 {
     uint64_t pixel = 0, w = (uint64_t)box2_width(p->data_window), h = (uint64_t)box2_height(p->data_window);
     for (int c = 0; c < p->channel_count; c++) pixel += sample_size(p->channels[c].type);
@@ -167,12 +167,13 @@ static bool check_chunk_size(const exr_file *file, int index, const exr_part *p,
         if (tx < columns) columns = tx;
     }
     if (lines > h) lines = h;
-    if (pixel * lines * columns <= EXR_MAX_CHUNK_BYTES) return true;
+    if (pixel * lines * columns <= EXRIO_MAX_CHUNK_BYTES) return true;
     return err_set(e, ERR_INPUT, file->path, NULL,
-                   "has blocks of more than %d bytes; save it again with ZIP compression or smaller tiles", EXR_MAX_CHUNK_BYTES);
+                   "has blocks of more than %d bytes; save it again with ZIP compression or smaller tiles",
+                   EXRIO_MAX_CHUNK_BYTES);
 }
 
-static bool fill_channels(exr_file *file, int index, exr_part *p, error *e)
+static bool fill_channels(exrio_file *file, int index, exrio_part *p, error *e)
 {
     const exr_attr_chlist_t *list = NULL;
     if (exr_get_channels(file->core, index, &list) != EXR_ERR_SUCCESS || list->num_channels < 1)
@@ -196,9 +197,9 @@ static bool fill_channels(exr_file *file, int index, exr_part *p, error *e)
 
 static box2 box_from(exr_attr_box2i_t b) { return (box2){b.min.x, b.min.y, b.max.x, b.max.y}; }
 
-static bool fill_part(exr_file *file, int index, error *e)
+static bool fill_part(exrio_file *file, int index, error *e)
 {
-    exr_part *p = &file->parts[index];
+    exrio_part *p = &file->parts[index];
     exr_storage_t storage;
     exr_attr_box2i_t data, display;
     exr_compression_t compression;
@@ -216,50 +217,50 @@ static bool fill_part(exr_file *file, int index, error *e)
     if (exr_get_pixel_aspect_ratio(file->core, index, &p->pixel_aspect) != EXR_ERR_SUCCESS) p->pixel_aspect = 1.0f;
     const char *name = NULL, *view = NULL;
     if (exr_get_name(file->core, index, &name) != EXR_ERR_SUCCESS || !name) name = "";
-    if (!exr_attr_string(file, index, "view", &view)) view = "";
+    if (!exrio_attr_string(file, index, "view", &view)) view = "";
     p->name = mem_string(name, e);
     p->view = mem_string(view, e);
     return p->name && p->view && check_window(file, p, e) && fill_channels(file, index, p, e) &&
-           (p->deep || check_chunk_size(file, index, p, e)) && exr_fill_views(file, index, p, e);
+           (p->deep || check_chunk_size(file, index, p, e)) && exrio_fill_views(file, index, p, e);
 }
 
-bool exr_file_open(const char *path, exr_file **out, error *e)
+bool exrio_file_open(const char *path, exrio_file **out, error *e)
 {
     *out = NULL;
-    exr_reader *r = mem_zero(1, sizeof *r, e);
+    exrio_reader *r = mem_zero(1, sizeof *r, e);
     if (!r) return false;
     pthread_mutex_init(&r->log.lock, NULL);
-    exr_file *file = &r->file;
+    exrio_file *file = &r->file;
     int count = 0;
     r->fd = infile_open(path, (infile_kind){NULL, ERR_INPUT}, &r->size, e);
     file->path = mem_string(path, e);
-    if (r->fd < 0 || !file->path || !exr_check_header(path, r->fd, r->size, &r->tables, e) || !open_core(r, e)) goto fail;
+    if (r->fd < 0 || !file->path || !exrio_check_header(path, r->fd, r->size, &r->tables, e) || !open_core(r, e)) goto fail;
     exr_get_count(file->core, &count);
     file->parts = mem_zero((size_t)count, sizeof *file->parts, e);
     if (!file->parts) goto fail;
     file->part_count = count;
     for (int i = 0; i < count; i++)
         if (!fill_part(file, i, e)) goto fail;
-    if (!exr_restore_tables(r, e)) goto fail;
+    if (!exrio_restore_tables(r, e)) goto fail;
     r->log.armed = false;
     *out = file;
     return true;
 
 fail:
     if (e && e->code != ERR_NONE && !e->file[0]) strncpy(e->file, path, sizeof e->file - 1); // out of memory knows no file
-    exr_file_close(file);
+    exrio_file_close(file);
     return false;
 }
 
-void exr_file_close(exr_file *file)
+void exrio_file_close(exrio_file *file)
 {
     if (!file) return;
     if (file->members) {
-        exr_merged_close(file);
+        exrio_merged_close(file);
         return;
     }
     for (int i = 0; i < file->part_count; i++) {
-        exr_part *p = &file->parts[i];
+        exrio_part *p = &file->parts[i];
         for (int c = 0; p->channels && c < p->channel_count; c++) {
             free(p->channels[c].name);
             free(p->channels[c].stored);
@@ -268,14 +269,14 @@ void exr_file_close(exr_file *file)
         free(p->channels);
         free(p->name);
         free(p->view);
-        exr_free_views(p);
+        exrio_free_views(p);
     }
     free(file->parts);
     free(file->path);
-    free(((exr_reader *)file)->restored);
+    free(((exrio_reader *)file)->restored);
     exr_context_t core = file->core;
     if (core) exr_finish(&core);
-    exr_reader *r = (exr_reader *)file;
+    exrio_reader *r = (exrio_reader *)file;
     if (r->fd >= 0) close(r->fd);
     pthread_mutex_destroy(&r->log.lock);
     free(r);

@@ -8,21 +8,21 @@
 
 static int compare_names(const void *a, const void *b) { return strcmp(*(const char *const *)a, *(const char *const *)b); }
 
-static bool check_channels(const char *path, const exr_out_part *p, error *e)
+static bool check_channels(const char *path, const exrio_out_part *p, error *e)
 {
     if (p->channel_count < 1) return err_set(e, ERR_OUTPUT, path, NULL, "would have a part without channels; ask for a layer");
-    if (p->channel_count > EXR_MAX_CHANNELS)
+    if (p->channel_count > EXRIO_MAX_CHANNELS)
         return err_set(e, ERR_OUTPUT, path, NULL, "would have %d channels in one part, more than %d; keep fewer layers",
-                       p->channel_count, EXR_MAX_CHANNELS);
+                       p->channel_count, EXRIO_MAX_CHANNELS);
     const char **names = mem_zero((size_t)p->channel_count, sizeof *names, e);
     if (!names) return false;
     bool ok = true;
     for (int i = 0; ok && i < p->channel_count; i++) {
         names[i] = p->channels[i].name;
         size_t n = strlen(names[i]);
-        if (n < 1 || n > EXR_MAX_NAME)
+        if (n < 1 || n > EXRIO_MAX_NAME)
             ok = err_set(e, ERR_OUTPUT, path, names[i], "has a channel name of %zu bytes; the format allows 1 to %d", n,
-                         EXR_MAX_NAME);
+                         EXRIO_MAX_NAME);
     }
     if (ok) qsort(names, (size_t)p->channel_count, sizeof *names, compare_names);
     for (int i = 1; ok && i < p->channel_count; i++)
@@ -32,10 +32,10 @@ static bool check_channels(const char *path, const exr_out_part *p, error *e)
     return ok;
 }
 
-static bool check_layout(const char *path, const exr_out_part *p, error *e)
+static bool check_layout(const char *path, const exrio_out_part *p, error *e)
 {
     int64_t w = (int64_t)p->data_window.x1 - p->data_window.x0 + 1, h = (int64_t)p->data_window.y1 - p->data_window.y0 + 1;
-    if (w < 1 || h < 1 || w > EXR_MAX_SIDE || h > EXR_MAX_SIDE || w * h > EXR_MAX_PIXELS)
+    if (w < 1 || h < 1 || w > EXRIO_MAX_SIDE || h > EXRIO_MAX_SIDE || w * h > EXRIO_MAX_PIXELS)
         return err_set(e, ERR_OUTPUT, path, NULL, "would have a data window of %lld x %lld pixels, which cannot be written",
                        (long long)w, (long long)h);
     if (!p->verbatim && (p->compression == EXR_COMPRESSION_DWAA || p->compression == EXR_COMPRESSION_DWAB))
@@ -45,16 +45,16 @@ static bool check_layout(const char *path, const exr_out_part *p, error *e)
                        p->compression);
     uint64_t pixel = 0;
     for (int i = 0; i < p->channel_count; i++) pixel += sample_size(p->channels[i].type);
-    if (pixel * (uint64_t)w * 32 > EXR_MAX_CHUNK_BYTES) // 32: the most lines a chunk of ours has
+    if (pixel * (uint64_t)w * 32 > EXRIO_MAX_CHUNK_BYTES) // 32: the most lines a chunk of ours has
         return err_set(e, ERR_OUTPUT, path, NULL, "would have lines too long for one block; keep fewer layers");
     return true;
 }
 
-bool exr_check_parts(const char *path, const exr_out_part *parts, int count, error *e)
+bool exrio_check_parts(const char *path, const exrio_out_part *parts, int count, error *e)
 {
-    if (count < 1 || count > EXR_MAX_PARTS) return err_set(e, ERR_OUTPUT, path, NULL, "cannot be written with %d parts", count);
+    if (count < 1 || count > EXRIO_MAX_PARTS) return err_set(e, ERR_OUTPUT, path, NULL, "cannot be written with %d parts", count);
     for (int i = 0; i < count; i++) {
-        const exr_out_part *p = &parts[i];
+        const exrio_out_part *p = &parts[i];
         if (!check_channels(path, p, e) || !check_layout(path, p, e)) return false;
         if (count == 1) continue;
         if (!p->name || !p->name[0])
@@ -68,12 +68,12 @@ bool exr_check_parts(const char *path, const exr_out_part *parts, int count, err
 
 // --- the header ---
 
-static bool is_long(const char *name) { return strlen(name) > EXR_SHORT_NAME; }
+static bool is_long(const char *name) { return strlen(name) > EXRIO_SHORT_NAME; }
 
-static bool has_long_copied_name(const exr_out_part *p)
+static bool has_long_copied_name(const exrio_out_part *p)
 {
-    exr_source s;
-    for (int n = 0; exr_attr_source(p, n, &s); n++) {
+    exrio_source s;
+    for (int n = 0; exrio_attr_source(p, n, &s); n++) {
         int32_t count = 0;
         if (exr_get_attribute_count(s.file->core, s.part, &count)) return false;
         for (int32_t i = 0; i < count; i++) {
@@ -87,7 +87,7 @@ static bool has_long_copied_name(const exr_out_part *p)
 }
 
 // Names of more than 31 bytes need a flag that old readers refuse, so it is set only where there are any.
-static bool has_long_name(const exr_out_part *p)
+static bool has_long_name(const exrio_out_part *p)
 {
     for (int i = 0; i < p->channel_count; i++)
         if (is_long(p->channels[i].name)) return true;
@@ -107,7 +107,7 @@ static exr_attr_box2i_t box_to(box2 b)
 }
 
 // The screen window belongs to the camera, so it is kept although every writer must write one.
-static exr_result_t put_required(exr_context_t core, int index, const exr_out_part *p)
+static exr_result_t put_required(exr_context_t core, int index, const exrio_out_part *p)
 {
     exr_attr_box2i_t data = box_to(p->data_window), display = box_to(p->display_window);
     exr_attr_v2f_t center = {0};
@@ -126,14 +126,14 @@ static exr_result_t put_required(exr_context_t core, int index, const exr_out_pa
     return rv;
 }
 
-static exr_result_t put_ours(exr_context_t core, int index, const exr_out_attr *a)
+static exr_result_t put_ours(exr_context_t core, int index, const exrio_out_attr *a)
 {
     switch (a->kind) {
-    case EXR_OUT_STRING:
+    case EXRIO_OUT_STRING:
         return exr_attr_set_string(core, index, a->name, a->string);
-    case EXR_OUT_FLOAT:
+    case EXRIO_OUT_FLOAT:
         return exr_attr_set_float(core, index, a->name, (float)a->number);
-    case EXR_OUT_CHROMATICITIES: {
+    case EXRIO_OUT_CHROMATICITIES: {
         float xy[8];
         for (int i = 0; i < 8; i++) xy[i] = (float)a->xy[i];
         exr_attr_chromaticities_t value;
@@ -141,9 +141,9 @@ static exr_result_t put_ours(exr_context_t core, int index, const exr_out_attr *
         memcpy(&value, xy, sizeof value);
         return exr_attr_set_chromaticities(core, index, a->name, &value);
     }
-    case EXR_OUT_STRINGS:
+    case EXRIO_OUT_STRINGS:
         return exr_attr_set_string_vector(core, index, a->name, a->string_count, (const char **)a->strings);
-    case EXR_OUT_M44: {
+    case EXRIO_OUT_M44: {
         float m[16];
         for (int i = 0; i < 16; i++) m[i] = (float)a->m44[i / 4][i % 4];
         exr_attr_m44f_t value;
@@ -154,7 +154,7 @@ static exr_result_t put_ours(exr_context_t core, int index, const exr_out_attr *
     return EXR_ERR_INVALID_ARGUMENT;
 }
 
-exr_result_t exr_put_header(exr_context_t core, const exr_out_part *parts, int count)
+exr_result_t exrio_put_header(exr_context_t core, const exrio_out_part *parts, int count)
 {
     exr_result_t rv = EXR_ERR_SUCCESS;
     bool long_names = false;
@@ -163,13 +163,13 @@ exr_result_t exr_put_header(exr_context_t core, const exr_out_part *parts, int c
     for (int i = 0; i < count; i++) deep |= parts[i].deep;
     if (long_names) rv = exr_set_longname_support(core, 1);
     for (int i = 0; rv == EXR_ERR_SUCCESS && i < count; i++) {
-        const exr_out_part *p = &parts[i];
+        const exrio_out_part *p = &parts[i];
         int index = -1;
         rv = exr_add_part(core, p->name && p->name[0] ? p->name : NULL,
                           p->deep ? EXR_STORAGE_DEEP_SCANLINE : EXR_STORAGE_SCANLINE, &index);
         if (rv == EXR_ERR_SUCCESS) rv = put_required(core, index, p);
         if (rv == EXR_ERR_SUCCESS && deep) rv = exr_set_version(core, index, 1); // 3.1.5 wants it of flat parts too, as a reader
-        if (rv == EXR_ERR_SUCCESS) rv = exr_attr_copy_all(core, index, p);
+        if (rv == EXR_ERR_SUCCESS) rv = exrio_attr_copy_all(core, index, p);
         for (int a = 0; rv == EXR_ERR_SUCCESS && a < p->attribute_count; a++) rv = put_ours(core, index, &p->attributes[a]);
     }
     return rv == EXR_ERR_SUCCESS ? exr_write_header(core) : rv;

@@ -4,7 +4,7 @@
 #include <dlfcn.h>
 #include <openexr.h>
 
-bool exr_library_check(error *e)
+bool exrio_library_check(error *e)
 {
     int major, minor, patch;
     const char *extra;

@@ -6,6 +6,6 @@
 
 // Within one minor version OpenEXR keeps its layout; between two, contexts have another size and every file would be refused as
 // damaged. ERR_INPUT, since no file can be read, naming both versions and the library's file.
-bool exr_library_check(error *e);
+bool exrio_library_check(error *e);
 
 #endif

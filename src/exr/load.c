@@ -14,9 +14,9 @@ typedef struct load_worker {
 } load_worker;
 
 typedef struct load_job {
-    exr_file *file;
+    exrio_file *file;
     int index; // of the part
-    exr_part *part;
+    exrio_part *part;
     exr_chunk_info_t *chunks;
     size_t chunk_count;
     int tile_width, tile_height, tiles_across; // scanline parts: the whole width, lines per chunk, 1
@@ -28,7 +28,7 @@ typedef struct load_job {
 
 static const char damaged[] = "is truncated or damaged; render it or copy it again";
 
-static core_log *log_of(const load_job *j) { return &((exr_reader *)j->file)->log; }
+static core_log *log_of(const load_job *j) { return &((exrio_reader *)j->file)->log; }
 
 static bool fail(load_job *j, exr_result_t code)
 {
@@ -41,7 +41,7 @@ static bool fail(load_job *j, exr_result_t code)
 // Counts the chunks of level 0 and how they lie in the image.
 static bool lay_out(load_job *j)
 {
-    const exr_part *p = j->part;
+    const exrio_part *p = j->part;
     size_t w = (size_t)box2_width(p->data_window), h = (size_t)box2_height(p->data_window);
     exr_result_t rv;
     if (p->tiled) {
@@ -67,7 +67,7 @@ static bool lay_out(load_job *j)
 // Reads where chunk `item` is and checks its leader.
 static bool read_leader(load_job *j, size_t item, exr_chunk_info_t *c)
 {
-    const exr_part *p = j->part;
+    const exrio_part *p = j->part;
     int tx = (int)(item % (size_t)j->tiles_across), ty = (int)(item / (size_t)j->tiles_across);
     exr_result_t rv = p->tiled
                           ? exr_read_tile_chunk_info(j->file->core, j->index, tx, ty, 0, 0, c)
@@ -99,12 +99,12 @@ static bool find_chunk(void *context, size_t item, int worker)
 // Channels that an earlier load brought are left alone: somebody may be reading them.
 static void point_channels(const load_job *j, const exr_chunk_info_t *c, exr_decode_pipeline_t *d)
 {
-    const exr_part *p = j->part;
+    const exrio_part *p = j->part;
     size_t width = (size_t)box2_width(p->data_window);
     size_t x = p->tiled ? (size_t)c->start_x * (size_t)j->tile_width : 0;
     size_t y = p->tiled ? (size_t)c->start_y * (size_t)j->tile_height : (size_t)(c->start_y - p->data_window.y0);
     for (int i = 0; i < d->channel_count; i++) {
-        const exr_channel *ch = &p->channels[i];
+        const exrio_channel *ch = &p->channels[i];
         size_t size = sample_size(ch->type);
         d->channels[i].user_line_stride = (int32_t)(width * size);
         d->channels[i].user_pixel_stride = (int32_t)size;
@@ -133,10 +133,10 @@ static bool decode_chunk(void *context, size_t item, int worker)
 
 static bool take_memory(load_job *j)
 {
-    exr_part *p = j->part;
+    exrio_part *p = j->part;
     size_t count = (size_t)box2_width(p->data_window) * (size_t)box2_height(p->data_window);
     for (int i = 0; i < p->channel_count; i++) {
-        exr_channel *c = &p->channels[i];
+        exrio_channel *c = &p->channels[i];
         if (!c->wanted || c->data) continue;
         c->data = mem_pixels(count, sample_size(c->type), j->error);
         if (!c->data) return false;
@@ -169,7 +169,7 @@ static bool decode_part(load_job *j, int threads)
 // DWAA and DWAB: by the OpenImageIO module.
 static bool decode_by_module(load_job *j)
 {
-    exr_part *p = j->part;
+    exrio_part *p = j->part;
     size_t n = (size_t)p->channel_count;
     bool ok = false;
     const char **names = mem_zero(n, sizeof *names, j->error);
@@ -196,9 +196,9 @@ out:
     return ok;
 }
 
-static bool load_part(exr_file *file, int index, int threads, bool *fresh, error *e)
+static bool load_part(exrio_file *file, int index, int threads, bool *fresh, error *e)
 {
-    exr_part *p = &file->parts[index];
+    exrio_part *p = &file->parts[index];
     bool any = false;
     if (p->deep) return true;
     for (int i = 0; i < p->channel_count; i++) any |= p->channels[i].wanted && !p->channels[i].data;
@@ -211,12 +211,12 @@ static bool load_part(exr_file *file, int index, int threads, bool *fresh, error
     return ok;
 }
 
-bool exr_file_load(exr_file *file, int threads, error *e)
+bool exrio_file_load(exrio_file *file, int threads, error *e)
 {
     size_t total = 0, at = 0;
     bool ok = true;
     if (file->members) { // whose channels are the same as ours
-        for (int i = 0; ok && i < file->member_count; i++) ok = exr_file_load(file->members[i], threads, e);
+        for (int i = 0; ok && i < file->member_count; i++) ok = exrio_file_load(file->members[i], threads, e);
         return ok;
     }
     for (int i = 0; i < file->part_count; i++) total += (size_t)file->parts[i].channel_count;

@@ -1,4 +1,4 @@
-// Several files of one frame as one: exr_file_open_all.
+// Several files of one frame as one: exrio_file_open_all.
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -65,18 +65,18 @@ static bool is_picture(const char *name)
 }
 
 // Channels without a layer get the pass for one. *renamed: there were some.
-static bool name_channels(exr_part *part, const char *pass, bool *renamed, error *e)
+static bool name_channels(exrio_part *part, const char *pass, bool *renamed, error *e)
 {
     *renamed = false;
     for (int c = 0; c < part->channel_count; c++) {
-        exr_channel *channel = &part->channels[c];
+        exrio_channel *channel = &part->channels[c];
         char name[STEM * 2];
         char plain[STEM], with_pass[STEM * 2];
-        exr_name_without_view(channel, plain, sizeof plain);
+        exrio_name_without_view(channel, plain, sizeof plain);
         if (strchr(plain, '.')) continue;
         snprintf(with_pass, sizeof with_pass, "%s.%s", pass, plain);
         if (channel->view)
-            exr_name_with_view(with_pass, channel->view, false, name, sizeof name);
+            exrio_name_with_view(with_pass, channel->view, false, name, sizeof name);
         else
             snprintf(name, sizeof name, "%s", with_pass);
         char *copy = mem_string(name, e);
@@ -88,14 +88,14 @@ static bool name_channels(exr_part *part, const char *pass, bool *renamed, error
     return true;
 }
 
-static bool take_member(exr_file *all, exr_file *member, const char *pass, error *e)
+static bool take_member(exrio_file *all, exrio_file *member, const char *pass, error *e)
 {
     bool renamed = false;
     if (member->part_count == 1 && !member->parts[0].name[0] && !is_picture(pass) &&
         !name_channels(&member->parts[0], pass, &renamed, e))
         return false;
     for (int p = 0; p < member->part_count; p++) {
-        exr_part *part = &all->parts[all->part_count];
+        exrio_part *part = &all->parts[all->part_count];
         *part = member->parts[p];
         part->name = mem_string(renamed ? pass : part->name, e);
         if (!part->name) return false;
@@ -104,12 +104,12 @@ static bool take_member(exr_file *all, exr_file *member, const char *pass, error
     return true;
 }
 
-static const char *file_of(const exr_file *all, int part) { return exr_part_file(all, &part)->path; }
+static const char *file_of(const exrio_file *all, int part) { return exrio_part_file(all, &part)->path; }
 
-static bool same_frame(const exr_file *all, error *e)
+static bool same_frame(const exrio_file *all, error *e)
 {
     for (int i = 1; i < all->part_count; i++) {
-        const exr_part *a = &all->parts[0], *b = &all->parts[i];
+        const exrio_part *a = &all->parts[0], *b = &all->parts[i];
         if (box2_equal(a->display_window, b->display_window) && a->pixel_aspect == b->pixel_aspect) continue;
         return err_set(e, ERR_INPUT, file_of(all, i), NULL,
                        "has a display window of %d x %d pixels, %s one of %d x %d; inputs of one frame must have the same",
@@ -119,7 +119,7 @@ static bool same_frame(const exr_file *all, error *e)
     return true;
 }
 
-static bool fail_duplicate(const exr_file *all, int part, int channel, int other, error *e)
+static bool fail_duplicate(const exrio_file *all, int part, int channel, int other, error *e)
 {
     char pattern[512];
     const char *path = file_of(all, part), *before = file_of(all, other);
@@ -130,7 +130,7 @@ static bool fail_duplicate(const exr_file *all, int part, int channel, int other
 }
 
 // Within one file parts may share channel names, and often do.
-static bool no_duplicates(const exr_file *all, error *e)
+static bool no_duplicates(const exrio_file *all, error *e)
 {
     for (int i = 1; i < all->part_count; i++)
         for (int k = 0; k < i; k++) {
@@ -143,7 +143,7 @@ static bool no_duplicates(const exr_file *all, error *e)
     return true;
 }
 
-static bool take_all(exr_file *all, char (*stems)[STEM], error *e)
+static bool take_all(exrio_file *all, char (*stems)[STEM], error *e)
 {
     int parts = 0, count = all->member_count;
     for (int i = 0; i < count; i++) parts += all->members[i]->part_count;
@@ -160,13 +160,13 @@ static bool take_all(exr_file *all, char (*stems)[STEM], error *e)
     return same_frame(all, e) && no_duplicates(all, e);
 }
 
-bool exr_file_open_all(const char *const *paths, int count, exr_file **out, error *e)
+bool exrio_file_open_all(const char *const *paths, int count, exrio_file **out, error *e)
 {
     *out = NULL;
-    if (count == 1) return exr_file_open(paths[0], out, e);
-    exr_file *all = mem_zero(1, sizeof *all, e);
+    if (count == 1) return exrio_file_open(paths[0], out, e);
+    exrio_file *all = mem_zero(1, sizeof *all, e);
     char(*stems)[STEM] = mem_zero((size_t)count, sizeof *stems, e);
-    exr_file **members = mem_zero((size_t)count, sizeof *members, e);
+    exrio_file **members = mem_zero((size_t)count, sizeof *members, e);
     if (!all || !stems || !members) {
         free(all);
         free(stems);
@@ -177,7 +177,7 @@ bool exr_file_open_all(const char *const *paths, int count, exr_file **out, erro
     all->members = members;
     for (int i = 0; ok && i < count; i++) {
         stem_of(paths[i], stems[i]);
-        ok = exr_file_open(paths[i], &members[i], e);
+        ok = exrio_file_open(paths[i], &members[i], e);
         all->member_count += ok;
     }
     ok = ok && take_all(all, stems, e);
@@ -185,11 +185,11 @@ bool exr_file_open_all(const char *const *paths, int count, exr_file **out, erro
     if (ok)
         *out = all;
     else
-        exr_file_close(all);
+        exrio_file_close(all);
     return ok;
 }
 
-const exr_file *exr_part_file(const exr_file *file, int *part)
+const exrio_file *exrio_part_file(const exrio_file *file, int *part)
 {
     for (int i = 0; i < file->member_count; i++) {
         if (*part < file->members[i]->part_count) return file->members[i];
@@ -198,10 +198,10 @@ const exr_file *exr_part_file(const exr_file *file, int *part)
     return file;
 }
 
-void exr_merged_close(exr_file *file)
+void exrio_merged_close(exrio_file *file)
 {
     for (int i = 0; file->parts && i < file->part_count; i++) free(file->parts[i].name); // the rest is the members'
-    for (int i = 0; i < file->member_count; i++) exr_file_close(file->members[i]);
+    for (int i = 0; i < file->member_count; i++) exrio_file_close(file->members[i]);
     free(file->members);
     free(file->parts);
     free(file->path);

@@ -16,7 +16,7 @@ typedef struct part_table {
 } part_table;
 
 typedef struct restorer {
-    exr_reader *r;
+    exrio_reader *r;
     part_table *parts;
     uint8_t *entries; // the tables of all parts
     size_t count;     // of entries
@@ -38,7 +38,7 @@ static bool is_zero(const uint8_t *b, size_t n)
 // False: there is nothing to restore, or no way to.
 static bool lay_out(restorer *s)
 {
-    exr_file *f = &s->r->file;
+    exrio_file *f = &s->r->file;
     for (int i = 0; i < f->part_count; i++) {
         part_table *t = &s->parts[i];
         int32_t count = 0;
@@ -129,7 +129,7 @@ static bool take_chunks(restorer *s)
     return true;
 }
 
-bool exr_restore_tables(exr_reader *r, error *e)
+bool exrio_restore_tables(exrio_reader *r, error *e)
 {
     restorer s = {.r = r};
     uint8_t flags = 0;

@@ -1,4 +1,4 @@
-// Stereo views told by channel names: OpenEXR's single-part multi-view form (the attribute multiView; exr_channel.view).
+// Stereo views told by channel names: OpenEXR's single-part multi-view form (the attribute multiView; exrio_channel.view).
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +18,7 @@ static const char *view_word(const char *name, const char *view)
 }
 
 // A name of one word is the default view's; one of several without a view's word is nobody's own.
-static const char *view_by_name(const exr_part *p, const char *name)
+static const char *view_by_name(const exrio_part *p, const char *name)
 {
     const char *best = NULL, *view = strchr(name, '.') ? NULL : p->views[0];
     for (int v = 0; v < p->view_count; v++) {
@@ -28,19 +28,19 @@ static const char *view_by_name(const exr_part *p, const char *name)
     return view;
 }
 
-void exr_free_views(exr_part *p)
+void exrio_free_views(exrio_part *p)
 {
     for (int v = 0; v < p->view_count; v++) free(p->views[v]);
     p->view_count = 0;
 }
 
-static void forget_views(exr_part *p)
+static void forget_views(exrio_part *p)
 {
     for (int c = 0; c < p->channel_count; c++) p->channels[c].view = NULL;
-    exr_free_views(p);
+    exrio_free_views(p);
 }
 
-static int views_with_channels(const exr_part *p)
+static int views_with_channels(const exrio_part *p)
 {
     int n = 0;
     for (int v = 0; v < p->view_count; v++)
@@ -52,13 +52,13 @@ static int views_with_channels(const exr_part *p)
     return n;
 }
 
-bool exr_fill_views(const exr_file *file, int index, exr_part *p, error *e)
+bool exrio_fill_views(const exrio_file *file, int index, exrio_part *p, error *e)
 {
-    const char *names[EXR_VIEWS];
-    int count = p->view[0] ? 0 : exr_attr_strings(file, index, "multiView", names, EXR_VIEWS);
+    const char *names[EXRIO_VIEWS];
+    int count = p->view[0] ? 0 : exrio_attr_strings(file, index, "multiView", names, EXRIO_VIEWS);
     for (int v = 0; v < count; v++) {
         size_t n = strlen(names[v]);
-        if (n < 1 || n > EXR_SHORT_NAME || strchr(names[v], '.')) continue;
+        if (n < 1 || n > EXRIO_SHORT_NAME || strchr(names[v], '.')) continue;
         if (!(p->views[p->view_count] = mem_string(names[v], e))) return false;
         p->view_count++;
     }
@@ -68,7 +68,7 @@ bool exr_fill_views(const exr_file *file, int index, exr_part *p, error *e)
     return true;
 }
 
-void exr_name_without_view(const exr_channel *c, char *out, size_t size)
+void exrio_name_without_view(const exrio_channel *c, char *out, size_t size)
 {
     const char *word = c->view ? view_word(c->name, c->view) : NULL;
     if (word)
@@ -77,7 +77,7 @@ void exr_name_without_view(const exr_channel *c, char *out, size_t size)
         snprintf(out, size, "%s", c->name);
 }
 
-void exr_name_with_view(const char *name, const char *view, bool is_default, char *out, size_t size)
+void exrio_name_with_view(const char *name, const char *view, bool is_default, char *out, size_t size)
 {
     const char *dot = strrchr(name, '.');
     if (!dot && is_default)

@@ -29,9 +29,9 @@ typedef struct write_worker {
 typedef struct write_job {
     exr_context_t core;
     int index; // of the part
-    const exr_out_part *part;
-    const exr_out_channel **channels; // sorted by name, as the library has them
-    int lines;                        // per chunk
+    const exrio_out_part *part;
+    const exrio_out_channel **channels; // sorted by name, as the library has them
+    int lines;                          // per chunk
     write_worker *workers;
     pthread_mutex_t lock;
     pthread_cond_t turn_changed;
@@ -76,7 +76,7 @@ static exr_result_t point_channels(const write_job *j, exr_encode_pipeline_t *p)
     size_t first = (size_t)(p->chunk.start_y - j->part->data_window.y0) * width;
     if (p->channel_count != j->part->channel_count) return EXR_ERR_INVALID_ARGUMENT;
     for (int i = 0; i < p->channel_count; i++) {
-        const exr_out_channel *c = j->channels[i];
+        const exrio_out_channel *c = j->channels[i];
         size_t size = sample_size(c->type);
         if (strcmp(c->name, p->channels[i].channel_name) != 0) return EXR_ERR_INVALID_ARGUMENT;
         p->channels[i].user_pixel_stride = (int32_t)size;
@@ -152,7 +152,7 @@ static bool write_chunk(void *context, size_t item, int worker)
 
 static int compare_channels(const void *a, const void *b)
 {
-    const exr_out_channel *const *ca = a, *const *cb = b;
+    const exrio_out_channel *const *ca = a, *const *cb = b;
     return strcmp((*ca)->name, (*cb)->name);
 }
 
@@ -167,7 +167,7 @@ static bool prepare(write_job *j, int threads, error *e)
     return true;
 }
 
-static exr_result_t write_part(exr_context_t core, int index, const exr_out_part *part, int threads, error *e)
+static exr_result_t write_part(exr_context_t core, int index, const exrio_out_part *part, int threads, error *e)
 {
     write_job j = {.core = core, .index = index, .part = part};
     pthread_mutex_init(&j.lock, NULL);
@@ -207,7 +207,7 @@ static bool report(exr_result_t rv, const outfile *file, const char *path, error
 }
 
 // From the disk and not from memory, as far as the system lets itself be asked.
-static bool inspect(const exr_inspector *inspector, const outfile *file, error *e)
+static bool inspect(const exrio_inspector *inspector, const outfile *file, error *e)
 {
     if (!inspector) return true;
     (void)!fsync(file->fd); // committing says what this may say
@@ -215,15 +215,15 @@ static bool inspect(const exr_inspector *inspector, const outfile *file, error *
     return inspector->look(inspector->context, file->temp, e);
 }
 
-bool exr_write(const char *path, const exr_out_part *parts, int part_count, int threads, error *e)
+bool exrio_write(const char *path, const exrio_out_part *parts, int part_count, int threads, error *e)
 {
-    return exr_write_inspected(path, parts, part_count, threads, NULL, e);
+    return exrio_write_inspected(path, parts, part_count, threads, NULL, e);
 }
 
-bool exr_write_inspected(const char *path, const exr_out_part *parts, int part_count, int threads, const exr_inspector *inspector,
-                         error *e)
+bool exrio_write_inspected(const char *path, const exrio_out_part *parts, int part_count, int threads,
+                           const exrio_inspector *inspector, error *e)
 {
-    if (!exr_check_parts(path, parts, part_count, e)) return false;
+    if (!exrio_check_parts(path, parts, part_count, e)) return false;
     outfile file = OUTFILE_NONE;
     if (!outfile_begin(path, &file, e)) return false;
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
@@ -235,7 +235,7 @@ bool exr_write_inspected(const char *path, const exr_out_part *parts, int part_c
     exr_context_t core = NULL;
     if (threads < 1) threads = 1;
     exr_result_t rv = exr_start_write(&core, file.temp, EXR_WRITE_FILE_DIRECTLY, &init);
-    if (rv == EXR_ERR_SUCCESS) rv = exr_put_header(core, parts, part_count);
+    if (rv == EXR_ERR_SUCCESS) rv = exrio_put_header(core, parts, part_count);
     for (int i = 0; rv == EXR_ERR_SUCCESS && i < part_count; i++) rv = write_part(core, i, &parts[i], threads, e);
     exr_result_t finished = core ? exr_finish(&core) : EXR_ERR_SUCCESS;
     if (rv == EXR_ERR_SUCCESS) rv = finished;
@@ -245,4 +245,4 @@ bool exr_write_inspected(const char *path, const exr_out_part *parts, int part_c
     return false;
 }
 
-bool exr_part_is_verbatim(const exr_part *part) { return !part->tiled; } // deep ones too, by their lines
+bool exrio_part_is_verbatim(const exrio_part *part) { return !part->tiled; } // deep ones too, by their lines

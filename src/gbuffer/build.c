@@ -46,7 +46,7 @@ plane build_plane(const build *b, role r, int component)
     plane p = {0};
     if (component >= b->r->components[r]) return p;
     channel_ref ref = b->r->channels[r][component];
-    const exr_part *part = &b->file->parts[ref.part];
+    const exrio_part *part = &b->file->parts[ref.part];
     p = (plane){.data = part->channels[ref.channel].data,
                 .type = part->channels[ref.channel].type,
                 .width = box2_width(part->data_window),
@@ -73,7 +73,7 @@ static void open_planes(build *b)
 static bool open_frame(build *b)
 {
     gbuffer *g = b->g;
-    const exr_part *part = &b->file->parts[b->r->main_part];
+    const exrio_part *part = &b->file->parts[b->r->main_part];
     g->data_window = part->data_window, g->display_window = part->display_window;
     g->width = box2_width(part->data_window), g->height = box2_height(part->data_window);
     g->pixel_aspect = part->pixel_aspect > 0.0f && isfinite(part->pixel_aspect) ? (double)part->pixel_aspect : 1.0;
@@ -110,7 +110,8 @@ static bool summarise(build *b)
     return true;
 }
 
-bool gbuffer_build(const exr_file *file, const resolution *r, const gbuffer_options *options, gbuffer *out, log_t *log, error *e)
+bool gbuffer_build(const exrio_file *file, const resolution *r, const gbuffer_options *options, gbuffer *out, log_t *log,
+                   error *e)
 {
     *out = (gbuffer){0};
     build b = {.file = file, .r = r, .options = options, .g = out, .log = log, .e = e, .row = convention_named(r->convention)};

@@ -42,7 +42,7 @@ typedef enum surface {
 } surface;
 
 typedef struct build {
-    const exr_file *file;
+    const exrio_file *file;
     const resolution *r;
     const gbuffer_options *options;
     const convention *row;

@@ -68,18 +68,18 @@ bool camera_from_ndc(double m[4][4], box2 data, box2 display, const camera_point
 }
 
 // A number, or a text that begins with one.
-bool camera_number(const exr_file *file, int part, const char *name, double *value)
+bool camera_number(const exrio_file *file, int part, const char *name, double *value)
 {
     const char *text;
-    part = exr_attr_part(file, part, name);
-    if (exr_attr_float(file, part, name, value)) return isfinite(*value);
-    if (!exr_attr_string(file, part, name, &text)) return false;
+    part = exrio_attr_part(file, part, name);
+    if (exrio_attr_float(file, part, name, value)) return isfinite(*value);
+    if (!exrio_attr_string(file, part, name, &text)) return false;
     char *end;
     *value = strtod(text, &end); // main() keeps the C locale for numbers
     return end != text && isfinite(*value);
 }
 
-bool camera_from_lens(const exr_file *file, int part, const header_camera *where, box2 data, box2 display, double pixel_aspect,
+bool camera_from_lens(const exrio_file *file, int part, const header_camera *where, box2 data, box2 display, double pixel_aspect,
                       camera *out)
 {
     double fov;
@@ -93,7 +93,7 @@ bool camera_from_lens(const exr_file *file, int part, const header_camera *where
 
 // "beginning" + "Rot/yaw" and so on, "Pos/x" and so on. Unreal's rotator: x forward, y right, z up, left-handed; yaw about z,
 // then pitch up, then roll clockwise. The columns made here are right, up, forward.
-static bool pose_from_angles(const exr_file *file, int part, const char *beginning, header_pose *out)
+static bool pose_from_angles(const exrio_file *file, int part, const char *beginning, header_pose *out)
 {
     static const char *const names[6] = {"Rot/yaw", "Rot/pitch", "Rot/roll", "Pos/x", "Pos/y", "Pos/z"};
     double v[6];
@@ -111,10 +111,10 @@ static bool pose_from_angles(const exr_file *file, int part, const char *beginni
     return true;
 }
 
-static bool pose_from_matrix(const exr_file *file, int part, const header_camera *where, header_pose *out)
+static bool pose_from_matrix(const exrio_file *file, int part, const header_camera *where, header_pose *out)
 {
     double m[4][4];
-    if (!where->pose || !exr_attr_m44(file, exr_attr_part(file, part, where->pose), where->pose, m)) return false;
+    if (!where->pose || !exrio_attr_m44(file, exrio_attr_part(file, part, where->pose), where->pose, m)) return false;
     mat3 r = {{{m[0][0], m[0][1], m[0][2]}, {m[1][0], m[1][1], m[1][2]}, {m[2][0], m[2][1], m[2][2]}}};
     vec3 t = v3(m[3][0], m[3][1], m[3][2]), inverse = v3_scale(m3_apply(r, t), -1.0);
     out->axes = where->world_to_camera ? r : m3_transpose(r);
@@ -135,7 +135,7 @@ static bool make_orthonormal(mat3 *m)
            fabs(v3_dot(columns[2], columns[0])) < 1e-3;
 }
 
-bool camera_header_pose(const exr_file *file, int part, const header_camera *where, header_pose *out)
+bool camera_header_pose(const exrio_file *file, int part, const header_camera *where, header_pose *out)
 {
     static const header_camera standard = {.pose = "worldToCamera", .world_to_camera = true, .looks_along_z = true};
     if (!file->core) return false;

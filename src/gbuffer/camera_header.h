@@ -14,10 +14,10 @@
 bool camera_from_ndc(double m[4][4], box2 data, box2 display, const camera_point *points, size_t count, camera *out);
 
 // An attribute's number, finite: one, or a text that begins with one.
-bool camera_number(const exr_file *file, int part, const char *name, double *value);
+bool camera_number(const exrio_file *file, int part, const char *name, double *value);
 
 // The lens of a row's field of view attribute; no pose. False when there is none or it is not between 0 and 180 degrees.
-bool camera_from_lens(const exr_file *file, int part, const header_camera *where, box2 data, box2 display, double pixel_aspect,
+bool camera_from_lens(const exrio_file *file, int part, const header_camera *where, box2 data, box2 display, double pixel_aspect,
                       camera *out);
 
 // The pose of a row, or else of worldToCamera.
@@ -28,6 +28,6 @@ typedef struct header_pose {
 } header_pose;
 
 // False when there is none or it is no rotation or reflection.
-bool camera_header_pose(const exr_file *file, int part, const header_camera *where, header_pose *out);
+bool camera_header_pose(const exrio_file *file, int part, const header_camera *where, header_pose *out);
 
 #endif

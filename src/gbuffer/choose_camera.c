@@ -33,7 +33,7 @@ static bool from_header(const build *b, camera *out)
     const gbuffer *g = b->g;
     if (!b->file->core) return false;
     size_t count = b->has_position ? b->point_count : 0;
-    if (exr_attr_m44(b->file, exr_attr_part(b->file, b->r->main_part, "worldToNDC"), "worldToNDC", m) &&
+    if (exrio_attr_m44(b->file, exrio_attr_part(b->file, b->r->main_part, "worldToNDC"), "worldToNDC", m) &&
         camera_from_ndc(m, g->data_window, g->display_window, b->points, count, out))
         return true;
     // A lens alone cannot be held against the positions.
@@ -81,7 +81,8 @@ static bool from_positions(build *b, camera *out, error *e)
     if (camera_fit(b->points, b->point_count, out, e)) {
         if (has_header)
             build_note(b, "header camera agrees: it puts the positions within %.2g pixels of their places", header.residual);
-        else if (b->file->core && exr_attr_exists(b->file, exr_attr_part(b->file, b->r->main_part, "worldToNDC"), "worldToNDC"))
+        else if (b->file->core &&
+                 exrio_attr_exists(b->file, exrio_attr_part(b->file, b->r->main_part, "worldToNDC"), "worldToNDC"))
             build_note(b, "header camera disagrees with the positions and is not used");
         settle_direction(b, out);
         return true;

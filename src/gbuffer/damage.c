@@ -82,7 +82,7 @@ static const char *header_filter(const build *b, role r)
     const char *channel = b->file->parts[ref.part].channels[ref.channel].name, *value;
     char name[300];
     snprintf(name, sizeof name, "arnold/aovs/%.*s/filter", (int)strcspn(channel, "."), channel);
-    return exr_attr_string(b->file, ref.part, name, &value) && !strstr(value, "closest") ? value : "";
+    return exrio_attr_string(b->file, ref.part, name, &value) && !strstr(value, "closest") ? value : "";
 }
 
 static void warn_filtered(build *b, role r, const edges of_reach[REACHES])
@@ -135,14 +135,14 @@ static double damaged_share(const build *b, role r)
 // What a lossy compression does to data, and which channels it does it to.
 typedef struct loss {
     exr_compression_t first, last;
-    bool (*takes)(const exr_channel *c);
+    bool (*takes)(const exrio_channel *c);
     const char *name, *how; // of the pass's name: "took the %s pass ..."
     bool measured;          // worth a word only where the pixels show it
 } loss;
 
-static bool loses_colours(const exr_channel *c) { return lossy_name(c->name); }
-static bool loses_halves(const exr_channel *c) { return c->type == SAMPLE_HALF; }
-static bool loses_floats(const exr_channel *c) { return c->type == SAMPLE_FLOAT; }
+static bool loses_colours(const exrio_channel *c) { return lossy_name(c->name); }
+static bool loses_halves(const exrio_channel *c) { return c->type == SAMPLE_HALF; }
+static bool loses_floats(const exrio_channel *c) { return c->type == SAMPLE_FLOAT; }
 
 static const loss losses[] = {
     {EXR_COMPRESSION_DWAA, EXR_COMPRESSION_DWAB, loses_colours, "DWA", "took the %s pass for a colour and stored it with loss",
@@ -151,7 +151,7 @@ static const loss losses[] = {
     {EXR_COMPRESSION_PXR24, EXR_COMPRESSION_PXR24, loses_floats, "PXR24", "cut the floats of the %s pass to 24 bits", true},
 };
 
-static const loss *loss_of(const exr_part *part, const exr_channel *c)
+static const loss *loss_of(const exrio_part *part, const exrio_channel *c)
 {
     for (size_t i = 0; i < sizeof losses / sizeof *losses; i++)
         if (part->compression >= (int)losses[i].first && part->compression <= (int)losses[i].last && losses[i].takes(c))
@@ -167,7 +167,7 @@ static void warn_loss(build *b, role r)
     size_t used = 0;
     for (int k = 0; k < b->r->components[r]; k++) {
         channel_ref ref = b->r->channels[r][k];
-        const exr_channel *c = &b->file->parts[ref.part].channels[ref.channel];
+        const exrio_channel *c = &b->file->parts[ref.part].channels[ref.channel];
         const loss *l = loss_of(&b->file->parts[ref.part], c);
         if (l) found = l;
         if (l && used + strlen(c->name) + 3 < sizeof list)

@@ -88,7 +88,8 @@ typedef struct gbuffer {
 // `log` may be NULL.
 // Without P: positions from depth (planar or radial); without N: normals from depth (said in a warning).
 // A frame without any surface is not an error: valid = 0, and the camera is whatever is known.
-bool gbuffer_build(const exr_file *file, const resolution *r, const gbuffer_options *options, gbuffer *out, log_t *log, error *e);
+bool gbuffer_build(const exrio_file *file, const resolution *r, const gbuffer_options *options, gbuffer *out, log_t *log,
+                   error *e);
 void gbuffer_free(gbuffer *g);
 
 // The first role of which it is doubtful what it means; NULL when there is none.

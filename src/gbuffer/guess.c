@@ -44,7 +44,7 @@ static bool file_says(role r, const char *path)
 
 bool guess_by_file_name(const layer_index *index, role r, layer_kind kind, layer_group *out)
 {
-    const exr_file *file = index->file;
+    const exrio_file *file = index->file;
     if (file->part_count != 1 || file->member_count > 0 || index->count == 0 || !file_says(r, file->path)) return false;
     for (int i = 0; i < index->count; i++)
         if (!index->entries[i].bare && (index->count > 1 || index->entries[i].component[0])) return false; // it has layers

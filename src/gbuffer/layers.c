@@ -62,7 +62,7 @@ static bool cut_view(char *name, const char *view)
     return true;
 }
 
-static bool has_part(const exr_file *file, const char *name)
+static bool has_part(const exrio_file *file, const char *name)
 {
     for (int p = 0; p < file->part_count; p++)
         if (file->parts[p].name && strcasecmp(file->parts[p].name, name) == 0) return true;
@@ -71,7 +71,7 @@ static bool has_part(const exr_file *file, const char *name)
 
 // The layer that a part is, without the view that multi-part stereo files append to keep names distinct. view receives the one
 // that a name alone tells: of two parts of one layer, "depth_left" and "depth_right".
-static void part_layer(const exr_file *file, const exr_part *part, char *name, char *view, size_t view_size)
+static void part_layer(const exrio_file *file, const exrio_part *part, char *name, char *view, size_t view_size)
 {
     static const char *const sides[] = {"left", "right"};
     snprintf(name, 256, "%s", part->name ? part->name : "");
@@ -100,11 +100,11 @@ static void part_layer(const exr_file *file, const exr_part *part, char *name, c
     }
 }
 
-static void fill(const exr_file *file, int p, int c, layer_entry *out)
+static void fill(const exrio_file *file, int p, int c, layer_entry *out)
 {
-    const exr_part *part = &file->parts[p];
+    const exrio_part *part = &file->parts[p];
     char name[256];
-    exr_name_without_view(&part->channels[c], name, sizeof name);
+    exrio_name_without_view(&part->channels[c], name, sizeof name);
     const char *dot = strrchr(name, '.');
     const char *component = component_of(dot ? dot + 1 : name);
     char own[256], prefix[256] = "", part_view[32] = "";
@@ -147,7 +147,7 @@ static void prefer_own(layer_index *index)
     for (int i = 0; i < kept; i++) index->entries[i].view[0] = 0;
 }
 
-bool layers_index(const exr_file *file, const char *view, layer_index *out, error *e)
+bool layers_index(const exrio_file *file, const char *view, layer_index *out, error *e)
 {
     int total = 0;
     for (int p = 0; p < file->part_count; p++) total += file->parts[p].channel_count;
@@ -319,9 +319,9 @@ channel_ref layers_sibling(const layer_index *index, channel_ref of, const char 
     return (channel_ref){-1, -1};
 }
 
-void layers_channel_name(const exr_file *file, channel_ref ref, char *buf, size_t size)
+void layers_channel_name(const exrio_file *file, channel_ref ref, char *buf, size_t size)
 {
-    const exr_part *part = &file->parts[ref.part];
+    const exrio_part *part = &file->parts[ref.part];
     const char *name = part->channels[ref.channel].name, *own = part->name ? part->name : "";
     bool with_part = file->part_count > 1 && own[0] && !starts_with_name(name, own);
     snprintf(buf, size, "%s%s%s", with_part ? own : "", with_part ? "." : "", name);
@@ -331,11 +331,11 @@ void layers_channel_name(const exr_file *file, channel_ref ref, char *buf, size_
 static bool is_channel(const layer_index *index, channel_ref ref, const char *name, bool any_case)
 {
     int (*compare)(const char *, const char *) = any_case ? strcasecmp : strcmp;
-    const exr_channel *c = &index->file->parts[ref.part].channels[ref.channel];
+    const exrio_channel *c = &index->file->parts[ref.part].channels[ref.channel];
     const char *part = index->file->parts[ref.part].name;
-    char other[EXR_NAME_ROOM * 2];
+    char other[EXRIO_NAME_ROOM * 2];
     if (compare(c->name, name) == 0 || (c->stored && compare(c->stored, name) == 0)) return true;
-    exr_name_without_view(c, other, sizeof other);
+    exrio_name_without_view(c, other, sizeof other);
     if (compare(other, name) == 0) return true;
     snprintf(other, sizeof other, "%s.%s", part ? part : "", c->name);
     return part && part[0] && compare(other, name) == 0;

@@ -4,7 +4,7 @@
 
 #include "gbuffer/resolve.h"
 
-enum { LAYER_NAME = 512, LAYER_KEY = 128, EXR_NAME_ROOM = 256, LAYERS_TEXT = 3000 }; // the last: of a list of them
+enum { LAYER_NAME = 512, LAYER_KEY = 128, EXRIO_NAME_ROOM = 256, LAYERS_TEXT = 3000 }; // the last: of a list of them
 
 // A part that holds the picture: the only one, or one of several, which are view layers then, each of the part's name.
 typedef enum picture_kind { PICTURE_NO, PICTURE_ONLY, PICTURE_OF_SEVERAL } picture_kind;
@@ -22,13 +22,13 @@ typedef struct layer_entry {
 } layer_entry;
 
 typedef struct layer_index {
-    const exr_file *file; // borrowed
+    const exrio_file *file; // borrowed
     layer_entry *entries;
     int count;
 } layer_index;
 
 // view: leave out the channels of other stereo views, and say of none which it is of; NULL: all.
-bool layers_index(const exr_file *file, const char *view, layer_index *out, error *e);
+bool layers_index(const exrio_file *file, const char *view, layer_index *out, error *e);
 void layers_free(layer_index *index);
 
 // A group of channels found for a pattern.
@@ -56,7 +56,7 @@ bool layers_exact(const layer_index *index, const char *layer, layer_kind kind, 
 int layers_channels(const layer_index *index, const char *name, layer_group *out, int most);
 
 // "PART.CHANNEL" where the file has several parts and the channel does not say it itself, else the channel's name.
-void layers_channel_name(const exr_file *file, channel_ref ref, char *buf, size_t size);
+void layers_channel_name(const exrio_file *file, channel_ref ref, char *buf, size_t size);
 
 // The channel `component` of the layer that holds `of`; part -1 when there is none.
 channel_ref layers_sibling(const layer_index *index, channel_ref of, const char *component);

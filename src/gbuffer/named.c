@@ -8,13 +8,13 @@ enum { MOST_GROUPS = 64 };
 // The view's own channels before those of no view, and the view layer's own before the others'.
 static int prefer(const named_search *s, layer_group *found, int count)
 {
-    const exr_file *file = s->index->file;
+    const exrio_file *file = s->index->file;
     for (int rule = 0; rule < 2 && count > 1; rule++) {
         layer_group kept[MOST_GROUPS];
         int n = 0;
         for (int i = 0; i < count; i++) {
             channel_ref ref = found[i].channels[0];
-            const exr_part *part = &file->parts[ref.part];
+            const exrio_part *part = &file->parts[ref.part];
             bool own = rule ? strcmp(found[i].key, s->key) == 0
                             : s->options->view && ((part->view && part->view[0]) || part->channels[ref.channel].view);
             if (own) kept[n++] = found[i];
@@ -91,7 +91,7 @@ static const char *other_view(const named_search *s, const char *name)
     if (!s->options->view || !layers_index(s->index->file, NULL, &all, &ignored)) return NULL;
     if (layers_channels(&all, name, found, 1) || layers_exact(&all, name, LAYER_SCALAR, found)) {
         channel_ref ref = found[0].channels[0];
-        const exr_part *part = &s->index->file->parts[ref.part];
+        const exrio_part *part = &s->index->file->parts[ref.part];
         view = part->view && part->view[0] ? part->view : part->channels[ref.channel].view;
     }
     layers_free(&all);

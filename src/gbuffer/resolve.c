@@ -30,7 +30,7 @@ static const struct {
 };
 
 typedef struct search {
-    const exr_file *file;
+    const exrio_file *file;
     const resolve_options *options;
     layer_index index;
     const convention *row, *plain;
@@ -62,19 +62,19 @@ static int role_score(const search *s, const convention *row, role r)
 }
 
 // "name", "beginning*" or "name=beginning of its text" (conventions.h).
-static bool mark_stands(const exr_file *file, int part, const char *mark)
+static bool mark_stands(const exrio_file *file, int part, const char *mark)
 {
     size_t n = strlen(mark);
     const char *equals = strchr(mark, '='), *text;
     char name[64];
-    if (n > 0 && mark[n - 1] == '*') return exr_attr_begins(file, part, mark, n - 1);
-    if (!equals) return exr_attr_exists(file, part, mark);
+    if (n > 0 && mark[n - 1] == '*') return exrio_attr_begins(file, part, mark, n - 1);
+    if (!equals) return exrio_attr_exists(file, part, mark);
     snprintf(name, sizeof name, "%.*s", (int)(equals - mark), mark);
-    return exr_attr_string(file, part, name, &text) && strncasecmp(text, equals + 1, strlen(equals + 1)) == 0;
+    return exrio_attr_string(file, part, name, &text) && strncasecmp(text, equals + 1, strlen(equals + 1)) == 0;
 }
 
 // The mark that the header shows, or NULL.
-static const char *find_mark(const exr_file *file, const convention *row)
+static const char *find_mark(const exrio_file *file, const convention *row)
 {
     for (int m = 0; file->core && m < CONVENTION_MARKS && row->marks[m]; m++)
         for (int p = 0; p < file->part_count; p++)
@@ -327,7 +327,7 @@ static bool no_geometry(const search *s)
                           : "name them with --position or --depth");
 }
 
-bool resolve_channels(const exr_file *file, const resolve_options *options, resolution *out, log_t *log, error *e)
+bool resolve_channels(const exrio_file *file, const resolve_options *options, resolution *out, log_t *log, error *e)
 {
     search s = {.file = file, .options = options, .log = log, .e = e};
     bool done = false;
@@ -361,7 +361,7 @@ out:
     return done;
 }
 
-void resolve_describe(const exr_file *file, const resolution *r, role which, char *buf, size_t size)
+void resolve_describe(const exrio_file *file, const resolution *r, role which, char *buf, size_t size)
 {
     static const char *const types[] = {[SAMPLE_UINT] = "uint", [SAMPLE_HALF] = "half", [SAMPLE_FLOAT] = "float"};
     if (r->components[which] == 0) {
@@ -369,7 +369,7 @@ void resolve_describe(const exr_file *file, const resolution *r, role which, cha
         return;
     }
     const channel_ref *c = r->channels[which];
-    const exr_channel *first = &file->parts[c[0].part].channels[c[0].channel];
+    const exrio_channel *first = &file->parts[c[0].part].channels[c[0].channel];
     char whole[600];
     layers_channel_name(file, c[0], whole, sizeof whole);
     int used = snprintf(buf, size, "%s: %s", roles[which].name, whole);

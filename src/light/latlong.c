@@ -73,7 +73,7 @@ typedef struct selection {
 } selection;
 
 // Channel `layer` + name of a part, -1 if there is none. layer includes its dot, or is "".
-static int find_channel(const exr_part *part, const char *layer, size_t layer_length, const char *name)
+static int find_channel(const exrio_part *part, const char *layer, size_t layer_length, const char *name)
 {
     for (int i = 0; i < part->channel_count; i++) {
         const char *full = part->channels[i].name;
@@ -83,7 +83,7 @@ static int find_channel(const exr_part *part, const char *layer, size_t layer_le
     return -1;
 }
 
-static bool select_rgb(const exr_part *part, const char *layer, size_t layer_length, int channels[3])
+static bool select_rgb(const exrio_part *part, const char *layer, size_t layer_length, int channels[3])
 {
     static const char *const names[3] = {"R", "G", "B"};
     for (int c = 0; c < 3; c++)
@@ -91,15 +91,15 @@ static bool select_rgb(const exr_part *part, const char *layer, size_t layer_len
     return true;
 }
 
-static bool select_grey(const exr_part *part, const char *layer, size_t layer_length, int channels[3])
+static bool select_grey(const exrio_part *part, const char *layer, size_t layer_length, int channels[3])
 {
     return (channels[0] = channels[1] = channels[2] = find_channel(part, layer, layer_length, "Y")) >= 0;
 }
 
-typedef bool (*select_fn)(const exr_part *part, const char *layer, size_t layer_length, int channels[3]);
+typedef bool (*select_fn)(const exrio_part *part, const char *layer, size_t layer_length, int channels[3]);
 
 // The unnamed layer first, then the layers in the file's order.
-static bool select_in_part(const exr_part *part, select_fn select, int channels[3])
+static bool select_in_part(const exrio_part *part, select_fn select, int channels[3])
 {
     if (select(part, "", 0, channels)) return true;
     for (int i = 0; i < part->channel_count; i++) {
@@ -109,7 +109,7 @@ static bool select_in_part(const exr_part *part, select_fn select, int channels[
     return false;
 }
 
-static bool select_channels(const exr_file *file, selection *s)
+static bool select_channels(const exrio_file *file, selection *s)
 {
     for (s->part = 0; s->part < file->part_count; s->part++)
         if (select_in_part(&file->parts[s->part], select_rgb, s->channels)) return true;
@@ -130,19 +130,19 @@ static bool two_to_one(box2 b)
 }
 
 // Renderers crop black borders off the data window. Then the display window is the sphere.
-static box2 sphere_window(const exr_part *part)
+static box2 sphere_window(const exrio_part *part)
 {
     bool cropped = !box2_equal(part->data_window, part->display_window) && !two_to_one(part->data_window) &&
                    two_to_one(part->display_window) && inside(part->data_window, part->display_window);
     return cropped ? part->display_window : part->data_window;
 }
 
-static float sample(const exr_channel *channel, size_t i)
+static float sample(const exrio_channel *channel, size_t i)
 {
     return channel->type == SAMPLE_HALF ? half_to_float(((const uint16_t *)channel->data)[i]) : ((const float *)channel->data)[i];
 }
 
-static bool gather(reader *r, const exr_part *part, const int channels[3])
+static bool gather(reader *r, const exrio_part *part, const int channels[3])
 {
     box2 data = part->data_window, window = sphere_window(part);
     size_t w = (size_t)box2_width(data), across = (size_t)box2_width(window);
@@ -164,15 +164,15 @@ static bool gather(reader *r, const exr_part *part, const int channels[3])
 static bool read_exr(reader *r, int threads, map_primaries *primaries)
 {
     bool ok = false;
-    exr_file *file = NULL;
+    exrio_file *file = NULL;
     selection s;
-    if (!exr_file_open(r->path, &file, r->e)) goto out;
+    if (!exrio_file_open(r->path, &file, r->e)) goto out;
     if (!select_channels(file, &s)) {
         err_set(r->e, ERR_INPUT, r->path, NULL,
                 "the environment map has no half or float channels R, G and B, nor a single Y; rename them");
         goto out;
     }
-    exr_part *part = &file->parts[s.part];
+    exrio_part *part = &file->parts[s.part];
     box2 window = sphere_window(part);
     double stored = 0.0;
     for (int c = 0; c < 3; c++) {
@@ -180,15 +180,15 @@ static bool read_exr(reader *r, int threads, map_primaries *primaries)
         part->channels[s.channels[c]].wanted = true;
     }
     if (!reduce_begin(&r->map, box2_width(window), box2_height(window), stored, r->path, r->e) ||
-        !exr_file_load(file, threads, r->e))
+        !exrio_file_load(file, threads, r->e))
         goto out;
     ok = gather(r, part, s.channels);
-    primaries->known = exr_attr_chromaticities(file, s.part, primaries->xy);
+    primaries->known = exrio_attr_chromaticities(file, s.part, primaries->xy);
     if (ok)
         log_info(r->log, "environment: %s, %s %s %s, %d x %d", r->path, part->channels[s.channels[0]].name,
                  part->channels[s.channels[1]].name, part->channels[s.channels[2]].name, r->map.from_width, r->map.from_height);
 out:
-    exr_file_close(file);
+    exrio_file_close(file);
     return ok;
 }
 

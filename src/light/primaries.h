@@ -6,7 +6,7 @@
 
 #include "base/vec.h"
 
-// xy of red, green, blue and white, two numbers each, as in OpenEXR's chromaticities (exr_attr_chromaticities).
+// xy of red, green, blue and white, two numbers each, as in OpenEXR's chromaticities (exrio_attr_chromaticities).
 extern const double primaries_rec709[8];
 
 // True if they are the same to what a float holds.

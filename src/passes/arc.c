@@ -9,7 +9,7 @@ static const float KAPPA = 1.0f;        // a run is as thick as it is wide
 static const float TOLERANCE = 1.3f, SHORT_STEP_TOLERANCE = 2.1f;
 
 // From here on half the slices are a set that resembles the whole, and what the other half changed tells of the noise.
-enum { LEAST_FOR_CHANGE = 4 };
+enum { LEAST_FOR_HALF_DIFFERENCE = 4 };
 
 // A filter over the neighbours averages slices but cannot find what steps have missed, so small budgets go into steps: 1 x 8, 1 x
 // 16 and 2 x 16 have lower errors at the same time than 2 x 4, 2 x 8 and 4 x 8. Large ones, which no filter follows, stay near
@@ -18,7 +18,7 @@ void arc_grid(int samples, int *slices, int *steps)
 {
     double most = fmin(samples / 32.0, sqrt(samples / 4.0));
     int s = (int)lround(most);
-    if (s >= LEAST_FOR_CHANGE) s = 2 * (int)lround(0.5 * most); // two halves
+    if (s >= LEAST_FOR_HALF_DIFFERENCE) s = 2 * (int)lround(0.5 * most); // two halves
     *slices = s > 1 ? s : 1;
     *steps = samples / (2 * *slices) > 1 ? samples / (2 * *slices) : 1;
 }
@@ -158,28 +158,28 @@ static bool run_bent(pass_context *c, const char *what, error *e)
         .writes = {{"scalar_image", &unused}, {"light_image", &c->bent}},
     };
     bool ok = pass_make(c, &unused, GL_R32F, 1.0f, e) && pass_make(c, &c->bent, GL_RGBA32F, 0.0f, e) &&
-              arc_run_at_rounds(c, &call, &params, e);
+              arc_run_as_adaptive(c, &call, &params, e);
     gpu_image_free(&unused);
     return ok;
 }
 
 static bool run_occlusion(pass_context *c, const char *what, error *e)
 {
-    if (c->set.error > 0.0) return arc_run_rounds(c, what, e) && (!c->want_bent || run_bent(c, what, e));
+    if (c->set.error > 0.0) return arc_run_adaptive(c, what, e) && (!c->want_bent || run_bent(c, what, e));
     const arc_params params = arc_params_of(c);
-    bool change = params.slices >= LEAST_FOR_CHANGE && c->set.blur > 0;
+    bool half_difference = params.slices >= LEAST_FOR_HALF_DIFFERENCE && c->set.blur > 0;
     variant v = arc_variant(c, what);
     variant_add(&v, c->want_bent, "BENT");
-    variant_add(&v, change, "CHANGE");
+    variant_add(&v, half_difference, "HALF_DIFFERENCE");
     if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e)) return false;
     if (c->want_bent && !pass_make(c, &c->bent, GL_RGBA32F, 0.0f, e)) return false;
-    if (change && !pass_make(c, &c->change, GL_R32F, 0.0f, e)) return false;
+    if (half_difference && !pass_make(c, &c->half_difference, GL_R32F, 0.0f, e)) return false;
     const pass_call call = {
         .program = "arc",
         .variant = v.words,
         PASS_PARAMS(params),
         .reads = {{"surface_image", &c->surface}, {"planes_image", &c->plane_image}},
-        .writes = {{"scalar_image", &c->occlusion}, {"light_image", &c->bent}, {"change_image", &c->change}},
+        .writes = {{"scalar_image", &c->occlusion}, {"light_image", &c->bent}, {"half_difference_image", &c->half_difference}},
     };
     return pass_run(c, &call, e);
 }
@@ -230,7 +230,7 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
                   {"albedo_image", albedo}},
         .writes = {{"scalar_image", &c->visibility}, {"light_image", &c->radiance}, {"indirect_image", &c->indirect}},
     };
-    return arc_run_at_rounds(c, &call, &params, e);
+    return arc_run_as_adaptive(c, &call, &params, e);
 }
 
 bool pass_gtao(pass_context *c, error *e) { return run_occlusion(c, "HORIZON", e); }

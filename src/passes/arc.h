@@ -31,11 +31,11 @@ int arc_round_steps(int round);  // a side, of what it adds
 
 // Occlusion, in rounds that double the slices of a tile until its estimated standard error (denoise.comp, root mean square over
 // the tile's surfaces) is below c->set.error or a further round would take more than c->set.most_samples. `what` names what
-// blocks. Fills c->occlusion, denoised, c->rounds and, if wanted, c->error.
-bool arc_run_rounds(pass_context *c, const char *what, error *e);
+// blocks. Fills c->occlusion, denoised, c->adaptive and, if wanted, c->error.
+bool arc_run_adaptive(pass_context *c, const char *what, error *e);
 // pass_run of a call of "arc" with these parameters (the call's own are ignored), after rounds with as many slices as each tile
 // came to.
-bool arc_run_at_rounds(pass_context *c, const pass_call *call, const arc_params *params, error *e);
+bool arc_run_as_adaptive(pass_context *c, const pass_call *call, const arc_params *params, error *e);
 
 void arc_put(float to[4], vec3 a, double w);
 

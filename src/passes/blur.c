@@ -56,7 +56,9 @@ static bool denoise(pass_context *c, const pass_denoising *d, const char *words,
         .variant = words,
         .tiles = d->tiles,
         PASS_PARAMS(params),
-        .reads = {{"estimate_image", &c->occlusion}, {"change_image", &c->change}, {"moments_image", across ? NULL : d->moments}},
+        .reads = {{"estimate_image", &c->occlusion},
+                  {"half_difference_image", &c->half_difference},
+                  {"moments_image", across ? NULL : d->moments}},
         .writes = {{"moments_out", across ? d->moments : NULL}, {"result_out", d->result}, {"error_out", d->square}},
     };
     return pass_run(c, &call, e);

@@ -13,7 +13,7 @@ typedef struct method {
     double thickness;      // default, share of the radius
     bool fills_radiance;   // own radiance and visibility; else SH irradiance x occlusion
     bool fills_bent;       // makes the bent layer
-    bool has_rounds;       // can sample until an error is reached: --error
+    bool adaptive;         // can sample until an error is reached: --error
     bool fills_sh;         // makes the sh layers, and filters its samples itself
     bool needs_mesh;       // sees the scene's own surfaces: --mesh
     const char *bounce;    // its own bounce, NULL for none

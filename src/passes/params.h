@@ -23,7 +23,6 @@ typedef int ivec4[4], ivec2[2];
 #include "../../shaders/params/depthmask.glsl"
 #include "../../shaders/params/frame.glsl"
 #include "../../shaders/params/hbao.glsl"
-#include "../../shaders/params/look.glsl"
 #include "../../shaders/params/points.glsl"
 #include "../../shaders/params/proxies.glsl"
 #include "../../shaders/params/s3ho.glsl"
@@ -31,6 +30,7 @@ typedef int ivec4[4], ivec2[2];
 #include "../../shaders/params/specular.glsl"
 #include "../../shaders/params/ssdo.glsl"
 #include "../../shaders/params/tile_error.glsl"
+#include "../../shaders/params/tone.glsl"
 #include "../../shaders/params/trace.glsl"
 #include "../../shaders/params/trace_grid.glsl"
 #include "../../shaders/params/upsample.glsl"
@@ -47,7 +47,7 @@ ALIGNED(blur_params, step, 8);
 ALIGNED(frame_block, sh, 16);
 ALIGNED(s3ho_params, world_from_camera, 16);
 ALIGNED(s3ho_light_params, light, 16);
-ALIGNED(trace_params, choices, 16);
+ALIGNED(trace_params, alias_table, 16);
 ALIGNED(trace_grid_params, size, 16);
 ALIGNED(upsample_params, light, 16);
 #undef ALIGNED
@@ -61,7 +61,7 @@ WHOLE(denoise_params);
 WHOLE(depthmask_params);
 WHOLE(frame_block);
 WHOLE(hbao_params);
-WHOLE(look_params);
+WHOLE(tone_params);
 WHOLE(points_params);
 WHOLE(proxies_params);
 WHOLE(s3ho_params);

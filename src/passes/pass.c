@@ -122,24 +122,24 @@ pass_context pass_like(const pass_context *c, const gbuffer *gb, const pass_sett
         .sunless = c->sunless,
         .trace = c->trace,
     };
-    memcpy(like.stored_sh, c->stored_sh, sizeof like.stored_sh);
+    memcpy(like.relight_sh, c->relight_sh, sizeof like.relight_sh);
     return like;
 }
 
 void pass_end(pass_context *c)
 {
-    gpu_image *images[] = {&c->depth,          &c->normal,        &c->albedo,    &c->beauty,     &c->material,  &c->emission,
-                           &c->diffuse_direct, &c->coverage,      &c->occlusion, &c->visibility, &c->radiance,  &c->indirect,
-                           &c->specular,       &c->diffuse_share, &c->composite, &c->diffuse,    &c->depthmask, &c->bent,
-                           &c->sh[0],          &c->sh[1],         &c->sh[2],     &c->sh[3],      &c->sh[4],     &c->surface,
-                           &c->plane_image,    &c->change,        &c->error};
+    gpu_image *images[] = {&c->depth,          &c->normal,          &c->albedo,    &c->beauty,     &c->material,  &c->emission,
+                           &c->diffuse_direct, &c->coverage,        &c->occlusion, &c->visibility, &c->radiance,  &c->indirect,
+                           &c->specular,       &c->diffuse_share,   &c->composite, &c->diffuse,    &c->depthmask, &c->bent,
+                           &c->sh[0],          &c->sh[1],           &c->sh[2],     &c->sh[3],      &c->sh[4],     &c->surface,
+                           &c->plane_image,    &c->half_difference, &c->error};
     for (size_t i = 0; i < sizeof images / sizeof *images; i++) gpu_image_free(images[i]);
     gpu_uniforms_free(c->frame_uniforms);
     gpu_uniforms_free(c->params_uniforms);
     gpu_tiles_free(&c->tiles);
-    gpu_tiles_free(&c->rounds.tiles);
-    free(c->rounds.last);
-    c->rounds.last = NULL;
+    gpu_tiles_free(&c->adaptive.tiles);
+    free(c->adaptive.last);
+    c->adaptive.last = NULL;
     c->frame_uniforms = c->params_uniforms = 0;
 }
 

@@ -73,14 +73,14 @@ typedef struct pass_sunless {
 enum { ROUNDS_LEAST_SAMPLES = 64, ROUNDS_MOST_SAMPLES = 2048 }; // of the first round; of all where nobody says
 
 // What --error has come to.
-typedef struct pass_rounds {
+typedef struct adaptive_sampling {
     int count;           // rounds that were run; 0: none, the number of samples was given
     gpu_tiles tiles;     // of GPU_TILE pixels, whatever the passes' own
     unsigned char *last; // of each tile, index of its last round
     int above;           // tiles that ran out of samples
     int most_samples;    // that a pixel had
     double mean_samples; // a pixel of the occupied tiles
-} pass_rounds;
+} adaptive_sampling;
 
 typedef struct pass_context {
     // Given by the caller before pass_begin.
@@ -98,7 +98,7 @@ typedef struct pass_context {
     const gbuffer *gb;                   // borrowed
     const environment *env;              // borrowed; NULL without light
     gpu_image environment;               // borrowed: its texture; id 0 for the white one
-    const float *stored_sh[SH_IMAGES];   // --from-sh: 4 a pixel as in sh, borrowed; NULL: s3ho measures
+    const float *relight_sh[SH_IMAGES];  // --from-sh: 4 a pixel as in sh, borrowed; NULL: s3ho measures
     const proxy_set *proxies;            // borrowed; NULL or empty: none
     pass_sunless *sunless;               // borrowed, lives as long as the batch
     struct trace_scene *trace;           // the same; for raytrace
@@ -108,9 +108,9 @@ typedef struct pass_context {
     gpu_image depth, normal, albedo, beauty, material, emission, diffuse_direct, coverage;
     // Layers; id 0 until their pass has run.
     gpu_image occlusion, visibility, radiance, indirect, specular, diffuse_share, composite, diffuse, depthmask;
-    gpu_image change;        // how much the second half of a method's slices moved the occlusion; for pass_denoise
-    gpu_image error;         // estimated standard error of the occlusion
-    gpu_image bent;          // mean open direction of the cosine-weighted hemisphere, camera space: 2/3 long where all is open
+    gpu_image half_difference; // how much the second half of a method's slices moved the occlusion; for pass_denoise
+    gpu_image error;           // estimated standard error of the occlusion
+    gpu_image bent;            // mean open direction of the cosine-weighted hemisphere, camera space: 2/3 long where all is open
     gpu_image sh[SH_IMAGES]; // SH vector of cosine-weighted visibility, coefficients 0 1 2 | 3 4 5 | 6 7 8 and, with four bands,
                              // | 9 10 11 12 | 13 14 15
     gpu_image plane_image;   // the planes, for the shader
@@ -119,7 +119,7 @@ typedef struct pass_context {
     bool suns_apart;  // radiance and visibility lack the suns of `sunless`, which bear no filter, until pass_suns adds them
     bool denoised;    // the occlusion is, and bears no blur
     plane_set planes; // found by the pass that uses them
-    pass_rounds rounds;
+    adaptive_sampling adaptive;
 
     GLuint frame_uniforms, params_uniforms;
     gpu_tiles tiles;
@@ -202,7 +202,7 @@ bool pass_s3ho(pass_context *c, error *e);        // -> sh, occlusion, radiance,
 bool pass_ssdo(pass_context *c, error *e);        // -> occlusion, radiance, visibility
 bool pass_vpl(pass_context *c, error *e);         // radiance or beauty, albedo -> indirect
 bool pass_ssdo_bounce(pass_context *c, error *e); // radiance or beauty, albedo -> indirect
-// The occlusion by a filter that knows its noise from `change`; other pictures by one that does not.
+// The occlusion by a filter that knows its noise from `half_difference`; other pictures by one that does not.
 typedef struct pass_denoising {
     const gpu_image *moments; // between the directions, rgba32f
     const gpu_image *result;
@@ -222,7 +222,7 @@ bool pass_upsample_indirect(pass_context *c, const pass_context *small, error *e
 // Unseen spheres: they block before the looks, and add their bounce after the method's. Both do nothing without spheres.
 bool pass_proxies(pass_context *c, error *e);                 // occlusion, visibility, radiance, bent, sh: in place
 bool pass_proxies_bounce(pass_context *c, error *e);          // indirect: in place
-bool pass_look(pass_context *c, gpu_image *scalar, error *e); // scale and contrast, in place
+bool pass_tone(pass_context *c, gpu_image *scalar, error *e); // scale and contrast, in place
 bool pass_irradiance(pass_context *c, error *e);              // occlusion -> radiance
 bool pass_edges(pass_context *c, error *e);                   // fills the layers of partly covered pixels
 bool pass_specular(pass_context *c, error *e);                // material, albedo -> specular, diffuse_share

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "light/choices.h"
+#include "light/alias_table.h"
 #include "passes/params.h"
 #include "passes/pass.h"
 #include "passes/trace.h"
@@ -84,7 +84,8 @@ static bool run_step(trace_run *r, const char *program, const char *words, size_
                     {"NextRays", &r->next_rays},
                     {"NextGains", &r->next_gains},
                     {"Triangles", &r->s->triangles},
-                    {"Choices", r->s->choices.id ? &r->s->choices : &r->pixels}}, // without choices the shader does not look
+                    {"AliasTable",
+                     r->s->alias_table.id ? &r->s->alias_table : &r->pixels}}, // without a table the shader does not look
     };
     return pass_run(c, &call, e);
 }
@@ -179,7 +180,7 @@ static bool settle_points(trace_run *r, error *e)
 
 static bool trace_sample(trace_run *r, size_t first, int index, error *e)
 {
-    size_t n = size_of_batch(r, first), kinds = r->params.choices[0] > 0 ? 2 : 1;
+    size_t n = size_of_batch(r, first), kinds = r->params.alias_table[0] > 0 ? 2 : 1;
     r->params.sample_index = index;
     variant start = {{0}};
     variant_add(&start, r->light, "LIGHT");
@@ -239,20 +240,20 @@ static bool trace_rounds(trace_run *r, error *e)
 
 // ---- the whole
 
-static bool make_choices(trace_run *r, error *e)
+static bool make_alias_table(trace_run *r, error *e)
 {
     trace_scene *s = r->s;
-    env_choices choices;
+    env_alias_table table;
     if (!(r->light || r->bounce) || !r->c->env || r->c->env->white) return true;
-    if (!s->choices.id) {
-        if (!env_choices_make(r->c->env, &choices, e)) return false;
-        size_t size = (size_t)choices.width * (size_t)choices.height * sizeof *choices.table;
-        bool ok = gpu_buffer_make(r->c->g, &s->choices, choices.table, size, "the environment's table", e);
-        s->choices_size[0] = choices.width, s->choices_size[1] = choices.height;
-        env_choices_free(&choices);
+    if (!s->alias_table.id) {
+        if (!env_alias_table_make(r->c->env, &table, e)) return false;
+        size_t size = (size_t)table.width * (size_t)table.height * sizeof *table.table;
+        bool ok = gpu_buffer_make(r->c->g, &s->alias_table, table.table, size, "the environment's table", e);
+        s->table_size[0] = table.width, s->table_size[1] = table.height;
+        env_alias_table_free(&table);
         if (!ok) return false;
     }
-    r->params.choices[0] = s->choices_size[0], r->params.choices[1] = s->choices_size[1];
+    r->params.alias_table[0] = s->table_size[0], r->params.alias_table[1] = s->table_size[1];
     return true;
 }
 
@@ -291,7 +292,7 @@ static bool prepare(trace_run *r, error *e)
             e, ERR_INPUT, NULL, NULL,
             "--method raytrace needs to know where the camera stands in the mesh's world, and this frame does not say; "
             "render a position pass in world space or use --camera FILE");
-    if (!trace_scene_open(r->s, c->g, set->mesh, (trace_backend)set->trace, c->threads, c->log, e) || !make_choices(r, e))
+    if (!trace_scene_open(r->s, c->g, set->mesh, (trace_backend)set->trace, c->threads, c->log, e) || !make_alias_table(r, e))
         return false;
     if (r->bounce && !r->s->coloured)
         log_warn(c->log, "mesh-grey",

@@ -64,13 +64,13 @@ static bool gather_pattern(pass_context *c, error *e)
 }
 
 // The vector a file brought along; the open share is its first coefficient.
-static bool upload_stored(pass_context *c, error *e)
+static bool upload_relight(pass_context *c, error *e)
 {
     size_t n = (size_t)c->width * (size_t)c->height;
     float *v = mem_pixels(4 * n, sizeof *v, e);
     if (!v) return false;
     for (int k = 0; k < images(c); k++) {
-        memcpy(v, c->stored_sh[k], 4 * n * sizeof *v);
+        memcpy(v, c->relight_sh[k], 4 * n * sizeof *v);
         for (size_t i = 0; k == 0 && i < n; i++) v[4 * i + 3] = (float)((double)v[4 * i] / (M_PI * Y00));
         gpu_image_upload(c->g, &c->sh[k], 0, v);
     }
@@ -116,8 +116,8 @@ bool pass_s3ho(pass_context *c, error *e)
     if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e)) return false;
     if (c->want_radiance && !pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e)) return false;
     if (c->want_visibility && !pass_make(c, &c->visibility, GL_R32F, 1.0f, e)) return false;
-    if (c->stored_sh[0]) {
-        if (!upload_stored(c, e)) return false;
+    if (c->relight_sh[0]) {
+        if (!upload_relight(c, e)) return false;
     } else if (!measure(c, e) || (c->set.blur > 0 && !gather_pattern(c, e))) {
         return false;
     }

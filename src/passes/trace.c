@@ -120,7 +120,7 @@ void trace_scene_close(trace_scene *s)
     gpu_buffer_free(&s->triangles);
     gpu_buffer_free(&s->offsets);
     gpu_buffer_free(&s->items);
-    gpu_buffer_free(&s->choices);
+    gpu_buffer_free(&s->alias_table);
     free(s->rays);
     free(s->hits);
     free(s->path);

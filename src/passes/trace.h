@@ -27,8 +27,8 @@ typedef struct trace_scene {
     trace_ray *rays; // Embree's copies, owned
     trace_hit *hits;
     size_t room;
-    gpu_buffer choices; // the environment's (light/choices.h)
-    int choices_size[2];
+    gpu_buffer alias_table; // the environment's (light/alias_table.h)
+    int table_size[2];
 } trace_scene;
 
 // Reads the mesh and builds what traces it, unless that is done. ERR_INPUT for the file, ERR_USAGE when `embree` is asked for and

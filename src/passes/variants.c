@@ -5,7 +5,7 @@
 #include <string.h>
 
 // What a method makes besides occlusion, of which each may be wanted or not.
-#define BLOCKED_BY(what) what " [BENT] [CHANGE] | " what " CHANGE ROUND"
+#define BLOCKED_BY(what) what " [BENT] [HALF_DIFFERENCE] | " what " HALF_DIFFERENCE ROUND"
 
 // The composite of a beauty, and the composite that is lit by us: its light, its background, the rest.
 #define BEHIND(light, background)                                                                                                \
@@ -35,7 +35,7 @@ const variant_row variant_table[] = {
     {"hbao", "", false, false},
     {"hemisphere", "", false, false},
     {"irradiance", "", false, false},
-    {"look", "", false, false},
+    {"tone", "", false, false},
     {"plane_light", "", false, false},
     {"proxies", "OCCLUSION [VECTOR] [BENT] [VISIBILITY] [RADIANCE] | SH [BANDS3] | BOUNCE", false, false},
     {"root", "", true, false},

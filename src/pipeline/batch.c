@@ -15,7 +15,7 @@
 #include "pipeline/preview.h"
 #include "pipeline/report.h"
 #include "pipeline/resume.h"
-#include "pipeline/shot.h"
+#include "pipeline/sequence_report.h"
 #include "pipeline/stopwatch.h"
 
 enum { PATH = 4096, NEIGHBOURS = 256 };
@@ -47,7 +47,7 @@ typedef struct batch {
     bool give_up; // a frame failed, and nobody asked to keep going
     int done, failed, skipped;
     frame_list failures;
-    shot_report report;
+    sequence_report report;
 } batch;
 
 bool batch_is(const options *o) { return o->frames || (o->input_count > 0 && !o->literal && pattern_is(o->inputs[0])); }
@@ -132,7 +132,7 @@ static void read_slot(batch *b, slot *s, int frame)
     s->result.record = record;
 }
 
-static void count_busy(batch *b, shot_thread who, stopwatch *since)
+static void count_busy(batch *b, sequence_thread who, stopwatch *since)
 {
     double cpu = 0.0; // the process's: it says nothing of one thread
     stopwatch_add(since, &b->report.busy_ms[who], &cpu);
@@ -146,7 +146,7 @@ static void read_one(batch *b, int i)
         read_slot(b, s, b->frames.frames[i]);
     else
         skip(s, NULL);
-    count_busy(b, SHOT_READER, &t);
+    count_busy(b, SEQUENCE_READER, &t);
     pass_on(b, s, WAS_READ);
 }
 
@@ -170,8 +170,8 @@ static void note_failure(batch *b, const slot *s)
     err_format(&s->error, text, sizeof text);
     log_error(b->j->log, "frame %d: %s", s->frame, text);
     b->failures.frames[b->failures.count++] = s->frame;
-    shot_add(&b->report,
-             &(shot_frame){s->frame, s->inputs.list[0], s->output, NULL, &s->error, NULL, seconds_since(&s->started)});
+    sequence_report_add(
+        &b->report, &(sequence_frame){s->frame, s->inputs.list[0], s->output, NULL, &s->error, NULL, seconds_since(&s->started)});
     pthread_mutex_lock(&b->lock);
     b->failed++;
     if (!b->j->o->keep_going) b->give_up = true;
@@ -181,7 +181,7 @@ static void note_failure(batch *b, const slot *s)
 static void summary(batch *b, const slot *s, int index)
 {
     double seconds = seconds_since(&s->started);
-    shot_add(&b->report, &(shot_frame){s->frame, s->inputs.list[0], s->output, s->why, NULL, &s->result, seconds});
+    sequence_report_add(&b->report, &(sequence_frame){s->frame, s->inputs.list[0], s->output, s->why, NULL, &s->result, seconds});
     if (s->skipped)
         progress_line(&b->progress, "frame %d (%d of %d): skipped, %s", s->frame, index + 1, b->frames.count, s->why);
     else
@@ -222,7 +222,7 @@ static void write_one(batch *b, int i)
     slot *s = take(b, i, FILTERED);
     stopwatch t = stopwatch_start();
     write_slot(b, s, i);
-    count_busy(b, SHOT_WRITER, &t);
+    count_busy(b, SEQUENCE_WRITER, &t);
     pass_on(b, s, EMPTY);
 }
 
@@ -244,7 +244,7 @@ static void begin_slot(batch *b, slot *s)
         frame_free(&s->result);
         skip(s, NULL);
     }
-    count_busy(b, SHOT_GPU, &t);
+    count_busy(b, SEQUENCE_GPU, &t);
 }
 
 // Hands a frame on, once its layers have arrived.
@@ -252,7 +252,7 @@ static void end_slot(batch *b, slot *s)
 {
     stopwatch t = stopwatch_start();
     if (!s->skipped && s->error.code == ERR_NONE) frame_wait(b->j, &s->result, &s->error);
-    count_busy(b, SHOT_GPU, &t);
+    count_busy(b, SEQUENCE_GPU, &t);
     pass_on(b, s, FILTERED);
 }
 
@@ -297,8 +297,8 @@ static bool list_frames(const options *o, frame_list *out, error *e)
 static bool measure_radius(job *j, int frame, error *e)
 {
     input_paths *in = mem_zero(1, sizeof *in, e);
-    bool ok = in && inputs_of_frame(j->o, frame, in) && frame_measure_radius(j, in->list, in->count, &j->shot_radius, e);
-    if (ok) log_info(j->log, "radius: %g scene units for the whole sequence, from %s", j->shot_radius, in->list[0]);
+    bool ok = in && inputs_of_frame(j->o, frame, in) && frame_measure_radius(j, in->list, in->count, &j->sequence_radius, e);
+    if (ok) log_info(j->log, "radius: %g scene units for the whole sequence, from %s", j->sequence_radius, in->list[0]);
     free(in);
     return ok || err_set(e, ERR_USAGE, j->o->inputs[0], NULL, "the path of frame %d is too long", frame);
 }
@@ -394,7 +394,7 @@ bool batch_run(job *j, error *e)
     b->failures.frames = ok ? mem_zero((size_t)b->frames.count, sizeof *b->failures.frames, e) : NULL;
     ok = ok && b->failures.frames;
     if (ok) compare_device(b);
-    if (ok && j->o->report && !pattern_is(j->o->report)) shot_begin(&b->report);
+    if (ok && j->o->report && !pattern_is(j->o->report)) sequence_report_begin(&b->report);
     if (ok) progress_begin(&b->progress, j->o->progress, b->frames.count, j->log);
     bool reading = ok && pthread_create(&threads[0], NULL, reader, b) == 0;
     bool writing = reading && pthread_create(&threads[1], NULL, writer, b) == 0;
@@ -404,12 +404,12 @@ bool batch_run(job *j, error *e)
         if (reading) pthread_join(threads[0], NULL);
         if (writing) pthread_join(threads[1], NULL);
         progress_end(&b->progress);
-        if (b->report.frames) ok = shot_write(&b->report, j, &b->failures, j->o->report, e);
+        if (b->report.frames) ok = sequence_report_write(&b->report, j, &b->failures, j->o->report, e);
         ok = conclude(b, e) && ok;
     }
     frames_free(&b->failures);
     frames_free(&b->frames);
-    shot_free(&b->report);
+    sequence_report_free(&b->report);
     pthread_cond_destroy(&b->changed);
     pthread_mutex_destroy(&b->lock);
     free(b);

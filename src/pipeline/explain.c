@@ -22,7 +22,7 @@ static void explain_renderer(const frame_result *r, FILE *to)
     if (!row->confirmed)
         fprintf(to, "            unverified: written from documentation, no file of this renderer has confirmed it\n");
     if (r->resolution.view_layer[0]) fprintf(to, "view layer  %s\n", r->resolution.view_layer);
-    const exr_part *part = &r->file->parts[r->resolution.main_part];
+    const exrio_part *part = &r->file->parts[r->resolution.main_part];
     fprintf(to, "windows     data %d x %d at (%d, %d), display %d x %d\n", box2_width(part->data_window),
             box2_height(part->data_window), part->data_window.x0, part->data_window.y0, box2_width(part->display_window),
             box2_height(part->display_window));
@@ -59,7 +59,7 @@ static void explain_colour(const options *o, const frame_result *r, FILE *to)
     fprintf(to, "  beauty and emission are taken as scene-linear; the albedo %s%s\n",
             o->albedo_colorspace ? "is converted from " : "too",
             o->albedo_colorspace ? o->albedo_colorspace : " (--albedo-colorspace names another space)");
-    if (exr_attr_chromaticities(r->file, r->resolution.main_part, xy))
+    if (exrio_attr_chromaticities(r->file, r->resolution.main_part, xy))
         fprintf(to, "  primaries by the header: red %.4g %.4g, green %.4g %.4g, blue %.4g %.4g, white %.4g %.4g\n", xy[0], xy[1],
                 xy[2], xy[3], xy[4], xy[5], xy[6], xy[7]);
     else

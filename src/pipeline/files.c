@@ -76,7 +76,7 @@ void run_files_read(run_files *files, bool exact)
     for (int i = 0; i < files->count; i++) {
         run_file *f = &files->list[i];
         if (!f->once) continue;
-        f->content = content_read(f->path, exr_head_bytes(f->path), exact);
+        f->content = content_read(f->path, exrio_head_bytes(f->path), exact);
         f->known = true;
     }
 }

@@ -31,7 +31,7 @@ static bool run_method(pass_context *c, const plan *p, error *e)
 {
     if (!p->method->run(c, e)) return false;
     if (!p->blur) return true;
-    if (c->change.id && !c->denoised && !pass_denoise(c, e)) return false;
+    if (c->half_difference.id && !c->denoised && !pass_denoise(c, e)) return false;
     gpu_image *plain = c->denoised ? NULL : &c->occlusion;
     if ((plain || c->visibility.id || c->radiance.id) && !pass_blur(c, c->set.blur, plain, &c->visibility, &c->radiance, e))
         return false;
@@ -41,8 +41,8 @@ static bool run_method(pass_context *c, const plan *p, error *e)
 static bool finish_light(pass_context *c, const plan *p, error *e)
 {
     if (!pass_proxies(c, e)) return false;
-    if (p->look && !pass_look(c, &c->occlusion, e)) return false;
-    if (p->look && c->visibility.id && !pass_look(c, &c->visibility, e)) return false;
+    if (p->tone && !pass_tone(c, &c->occlusion, e)) return false;
+    if (p->tone && c->visibility.id && !pass_tone(c, &c->visibility, e)) return false;
     return !p->irradiance || pass_irradiance(c, e);
 }
 
@@ -81,7 +81,7 @@ static bool run_half(pass_context *c, const gbuffer *half, const plan *p, error 
     bool ok = run_method(&small, p, e);
     // All layers go up together, unless the bounce needs what is done to them at either size.
     bool early =
-        p->bounce && c->set.relight && (p->look || p->irradiance || (c->proxies && c->proxies->count > 0) || small.suns_apart);
+        p->bounce && c->set.relight && (p->tone || p->irradiance || (c->proxies && c->proxies->count > 0) || small.suns_apart);
     ok = ok && (!early || pass_upsample(c, &small, e));
     if (ok && p->bounce) ok = (!early || (pass_suns(&small, e) && finish_light(&small, p, e))) && run_bounce(&small, p, e);
     ok = ok && (early ? pass_upsample_indirect(c, &small, e) : pass_upsample(c, &small, e));
@@ -103,7 +103,7 @@ static bool run_passes(pass_context *c, const gbuffer *half, const plan *p, erro
     return !p->composite || pass_composite(c, e);
 }
 
-static void take_rounds(const job *j, frame_result *r, const pass_rounds *rounds)
+static void take_adaptive(const job *j, frame_result *r, const adaptive_sampling *rounds)
 {
     r->rounds = rounds->count, r->tiles_above = rounds->above, r->mean_samples = rounds->mean_samples;
     if (r->rounds == 0) return;
@@ -170,7 +170,7 @@ bool filter_begin(job *j, frame_result *r, error *e)
         .sunless = &j->sunless,
         .trace = &j->trace,
     };
-    for (int k = 0; k < SH_IMAGES; k++) c.stored_sh[k] = r->stored_sh[k];
+    for (int k = 0; k < SH_IMAGES; k++) c.relight_sh[k] = r->relight_sh[k];
     if (!pass_begin(&c, e)) return false;
     bool ok = run_passes(&c, &r->half, p, e) && gpu_finish(&j->g, "the passes", e);
     stopwatch_add(&t, &r->wall_ms[STAGE_PASSES], &r->cpu_ms[STAGE_PASSES]);
@@ -179,7 +179,7 @@ bool filter_begin(job *j, frame_result *r, error *e)
     // What was converted meanwhile has its own time.
     r->wall_ms[STAGE_READ_BACK] -= r->wall_ms[STAGE_CONVERT] - wall;
     r->cpu_ms[STAGE_READ_BACK] -= r->cpu_ms[STAGE_CONVERT] - cpu;
-    if (ok) take_rounds(j, r, &c.rounds);
+    if (ok) take_adaptive(j, r, &c.adaptive);
     take_counts(r, &c);
     r->gl = gpu_counts_since(&j->g, &before);
     pass_end(&c);

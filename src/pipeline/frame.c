@@ -15,9 +15,9 @@
 #include "pipeline/filter.h"
 #include "pipeline/output.h"
 #include "pipeline/read_back.h"
+#include "pipeline/relight.h"
 #include "pipeline/settings.h"
 #include "pipeline/stopwatch.h"
-#include "pipeline/stored.h"
 #include "pipeline/views.h"
 #include "plugin/colour.h"
 
@@ -66,7 +66,7 @@ static resolve_options resolve_options_of(const options *o)
 }
 
 // The channels that will be looked at; with --keep all, every one of them, for they are written again.
-static void want_channels(const job *j, exr_file *file, const resolution *r, const plan *what)
+static void want_channels(const job *j, exrio_file *file, const resolution *r, const plan *what)
 {
     for (int p = 0; !j->o->keep_none && p < file->part_count; p++)
         for (int c = 0; !file->parts[p].deep && !output_keeps_chunks(j->o, file, p, what) && c < file->parts[p].channel_count;
@@ -93,7 +93,7 @@ static bool resolve_view(const job *j, frame_result *r, error *e)
         !output_check_names(j->o, r->file, r->view, &r->plan, e))
         return false;
     want_channels(j, r->file, &r->resolution, &r->plan);
-    return !r->plan.from_sh || stored_sh_want(j->o, r->file, r->view, e);
+    return !r->plan.from_sh || relight_want(j->o, r->file, r->view, e);
 }
 
 // The albedo as linear light; the channels pass through as they are. Beauty and emission are rendered light: linear already.
@@ -140,7 +140,7 @@ static bool build_view(const job *j, frame_result *r, error *e)
                          .depth_far = j->o->depth_range[1]};
     if (r->view) log_info(j->log, "view %s:", r->view);
     return gbuffer_build(r->file, &r->resolution, &g, &r->gb, j->log, e) && check_doubt(j, r, e) && convert_albedo(j, r, e) &&
-           (!r->plan.from_sh || stored_sh_load(j->o, r->file, r->view, &r->gb, r->stored_sh, e));
+           (!r->plan.from_sh || relight_load(j->o, r->file, r->view, &r->gb, r->relight_sh, e));
 }
 
 // The first view is *r itself; the others are appended.
@@ -195,7 +195,7 @@ static bool begin_reading(const job *j, const char *const *inputs, int count, fr
 {
     *r = (frame_result){0};
     stopwatch t = stopwatch_start();
-    bool ok = exr_file_open_all(inputs, count, &r->file, e) && list_views(j, r, e);
+    bool ok = exrio_file_open_all(inputs, count, &r->file, e) && list_views(j, r, e);
     for (frame_result *v = r; ok && v; v = v->next_view) ok = resolve_view(j, v, e);
     lap(r, STAGE_READ, &t);
     return ok && fits_memory(j, r, e);
@@ -204,7 +204,7 @@ static bool begin_reading(const job *j, const char *const *inputs, int count, fr
 static bool finish_reading(const job *j, frame_result *r, error *e)
 {
     stopwatch t = stopwatch_start();
-    bool ok = exr_file_load(r->file, j->threads, e);
+    bool ok = exrio_file_load(r->file, j->threads, e);
     lap(r, STAGE_READ, &t);
     for (frame_result *v = r; ok && v; v = v->next_view) ok = build_view(j, v, e);
     lap(r, STAGE_RESOLVE, &t);
@@ -267,7 +267,7 @@ static bool prepare_light(job *j, const frame_result *r, error *e)
                       .scale = j->o->env_scale,
                       .threads = j->threads,
                       .colorspace = j->o->env_colorspace,
-                      .primaries = exr_attr_chromaticities(r->file, r->resolution.main_part, primaries) ? primaries : NULL,
+                      .primaries = exrio_attr_chromaticities(r->file, r->resolution.main_part, primaries) ? primaries : NULL,
                       .ocio = j->o->ocio};
     if (!environment_load(&eo, &j->env, j->log, e)) return false;
     j->env_loaded = true;
@@ -406,7 +406,7 @@ static void free_view(frame_result *r)
     }
     read_back_drop(r);
     gbuffer_free(&r->half);
-    for (int k = 0; k < SH_IMAGES; k++) free(r->stored_sh[k]);
+    for (int k = 0; k < SH_IMAGES; k++) free(r->relight_sh[k]);
     proxies_free(&r->proxies);
     gbuffer_free(&r->gb);
 }
@@ -419,6 +419,6 @@ void frame_free(frame_result *r)
         free(v);
     }
     free_view(r);
-    exr_file_close(r->file);
+    exrio_file_close(r->file);
     *r = (frame_result){0};
 }

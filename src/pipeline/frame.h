@@ -30,7 +30,7 @@ typedef struct job {
     progress *progress;       // borrowed, may be NULL
     bool no_floats;           // nobody looks at a frame's `layers`: they are not kept
     bool no_pass_times;       // nobody looks at the passes' own times, for which each would have to be waited for
-    double shot_radius;       // automatic radius of the whole sequence; 0: each frame has its own
+    double sequence_radius;   // automatic radius of the whole sequence; 0: each frame has its own
 } job;
 
 typedef enum stage { STAGE_READ, STAGE_RESOLVE, STAGE_PASSES, STAGE_READ_BACK, STAGE_CONVERT, STAGE_WRITE, STAGE_COUNT } stage;
@@ -38,7 +38,7 @@ typedef enum stage { STAGE_READ, STAGE_RESOLVE, STAGE_PASSES, STAGE_READ_BACK, S
 // What one frame did, for -v and --report. A stereo file has one for each view, in a list; each view has its own camera, and all
 // have the first one's radius.
 typedef struct frame_result {
-    exr_file *file; // the input, open
+    exrio_file *file; // the input, open
     resolution resolution;
     gbuffer gb;
     plan plan;
@@ -64,7 +64,7 @@ typedef struct frame_result {
     float *layers[LAYER_COUNT];
     struct layer_band *bands; // of the layers, on their way from the device (read_back.h); owned
     int band_count;
-    float *stored_sh[SH_IMAGES];    // --from-sh: what the input brought along, else NULL
+    float *relight_sh[SH_IMAGES];   // --from-sh: what the input brought along, else NULL
     bool prepared;                  // by filter_prepare
     bool uncovered;                 // the coverage says nothing that the depth does not
     gbuffer half;                   // set.half: the frame at half its size, until the passes have run

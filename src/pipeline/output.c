@@ -12,12 +12,12 @@
 
 enum { MAX_OURS = LAYER_COUNT * 4 + 5, NAME_SIZE = 128, MAX_ATTRS = 12 + VIEWS_MAX };
 
-// Everything exr_write borrows for one view.
+// Everything exrio_write borrows for one view.
 typedef struct assembly {
     char names[MAX_OURS][NAME_SIZE];
-    exr_out_channel ours[MAX_OURS];
+    exrio_out_channel ours[MAX_OURS];
     int our_count;
-    exr_out_attr attrs[MAX_ATTRS];
+    exrio_out_attr attrs[MAX_ATTRS];
     int attr_count;
     char *args; // owned
     char camera[512], environment[600];
@@ -28,19 +28,19 @@ typedef struct assembly {
 typedef struct book {
     assembly *views[VIEWS_MAX]; // owned
     int view_count;
-    exr_out_part *parts;
+    exrio_out_part *parts;
     int part_count;
-    exr_source *sources; // of attributes, of a merged part; as many as the file has parts for each view
+    exrio_source *sources; // of attributes, of a merged part; as many as the file has parts for each view
     int source_count;
     char record[RECORD_TEXT + 1]; // "" for none
-    exr_out_attr first_record;    // of the file's first part, where that is not one of ours
-    exr_out_part *shared;         // of views that names tell: the part that has the first one's layers, and so the others'
+    exrio_out_attr first_record;  // of the file's first part, where that is not one of ours
+    exrio_out_part *shared;       // of views that names tell: the part that has the first one's layers, and so the others'
 } book;
 
 // What a name in a file of ours depends on.
 typedef struct naming {
     const options *o;
-    const exr_file *file;
+    const exrio_file *file;
     const char *view; // NULL without views
 } naming;
 
@@ -74,7 +74,7 @@ static bool is_main(const naming *n, const char *channel)
     return false;
 }
 
-bool output_check_names(const options *o, const exr_file *file, const char *view, const plan *p, error *e)
+bool output_check_names(const options *o, const exrio_file *file, const char *view, const plan *p, error *e)
 {
     const naming n = {o, file, view};
     if (o->main_composite && !(p->layers & 1u << LAYER_COMPOSITE))
@@ -83,7 +83,7 @@ bool output_check_names(const options *o, const exr_file *file, const char *view
             "--main composite needs the composite layer, which is not made here; add it to --layers, or leave out --main");
     for (int i = 0; !o->keep_none && i < file->part_count; i++)
         for (int c = 0; c < file->parts[i].channel_count && !file->parts[i].deep; c++)
-            if (is_ours(&n, p, file->parts[i].channels[c].name) && !exr_attr_exists(file, i, "ssdo/version"))
+            if (is_ours(&n, p, file->parts[i].channels[c].name) && !exrio_attr_exists(file, i, "ssdo/version"))
                 return err_set(e, ERR_INPUT, file->path, file->parts[i].channels[c].name,
                                "the input already has a channel that we would write, and it is not ours; use --prefix to name "
                                "ours otherwise");
@@ -91,11 +91,11 @@ bool output_check_names(const options *o, const exr_file *file, const char *view
 }
 
 // Nothing of the part is dropped or changed, so its chunks can be copied unseen.
-bool output_keeps_chunks(const options *o, const exr_file *file, int part, const plan *p)
+bool output_keeps_chunks(const options *o, const exrio_file *file, int part, const plan *p)
 {
-    const exr_part *in = &file->parts[part];
+    const exrio_part *in = &file->parts[part];
     if (in->deep) return true;
-    if (!o->multipart || o->keep_none || o->compression || !exr_part_is_verbatim(in) || file->members) return false;
+    if (!o->multipart || o->keep_none || o->compression || !exrio_part_is_verbatim(in) || file->members) return false;
     for (int v = -1; v < in->view_count; v++) { // of any view, so that the answer is the same for each
         const naming n = {o, file, v < 0 ? NULL : in->views[v]};
         for (int c = 0; c < in->channel_count; c++)
@@ -104,7 +104,7 @@ bool output_keeps_chunks(const options *o, const exr_file *file, int part, const
     return true;
 }
 
-static int compression_of(const options *o, const exr_part *part)
+static int compression_of(const options *o, const exrio_part *part)
 {
     static const struct {
         const char *name;
@@ -128,7 +128,7 @@ static void add_main(assembly *a, const naming *n)
         for (int i = 0, count = a->our_count; i < count; i++) {
             if (strcmp(a->names[i], name) != 0) continue;
             view_name(n->file, n->view, (const char[]){*c, 0}, a->names[a->our_count], NAME_SIZE);
-            a->ours[a->our_count] = (exr_out_channel){a->names[a->our_count], a->ours[i].type, a->ours[i].data};
+            a->ours[a->our_count] = (exrio_out_channel){a->names[a->our_count], a->ours[i].type, a->ours[i].data};
             a->our_count++;
         }
     }
@@ -142,22 +142,22 @@ static void add_layers(assembly *a, const job *j, const frame_result *r)
     for (int l = 0; l < LAYER_COUNT; l++)
         for (int k = 0; r->samples[l][0] && layer_table[l].channels[k]; k++) {
             layer_channel(&n, layer_table[l].name, layer_table[l].channels[k], a->names[a->our_count]);
-            a->ours[a->our_count] = (exr_out_channel){a->names[a->our_count], r->types[l], r->samples[l][k]};
+            a->ours[a->our_count] = (exrio_out_channel){a->names[a->our_count], r->types[l], r->samples[l][k]};
             a->our_count++;
         }
     if (!r->samples[LAYER_COMPOSITE][0] || !r->resolution.components[ROLE_ALPHA]) return;
     // The composite's alpha is the input's own, bits and type.
     channel_ref ref = r->resolution.channels[ROLE_ALPHA][0];
-    const exr_channel *alpha = &r->file->parts[ref.part].channels[ref.channel];
+    const exrio_channel *alpha = &r->file->parts[ref.part].channels[ref.channel];
     layer_channel(&n, "composite", 'A', a->names[a->our_count]);
-    a->ours[a->our_count] = (exr_out_channel){a->names[a->our_count], alpha->type, alpha->data};
+    a->ours[a->our_count] = (exrio_out_channel){a->names[a->our_count], alpha->type, alpha->data};
     a->our_count++;
 }
 
-static exr_out_attr *add_attr(assembly *a, const char *name, exr_attr_kind kind)
+static exrio_out_attr *add_attr(assembly *a, const char *name, exrio_attr_kind kind)
 {
-    exr_out_attr *attr = &a->attrs[a->attr_count++];
-    *attr = (exr_out_attr){.name = name, .kind = kind};
+    exrio_out_attr *attr = &a->attrs[a->attr_count++];
+    *attr = (exrio_out_attr){.name = name, .kind = kind};
     return attr;
 }
 
@@ -171,26 +171,26 @@ static bool add_attributes(assembly *a, const job *j, const frame_result *r, err
 {
     static const char *sources[] = {"option", "fit", "header", "plane"};
     const camera *c = &r->gb.camera;
-    add_attr(a, "ssdo/version", EXR_OUT_STRING)->string = SSDO_VERSION;
+    add_attr(a, "ssdo/version", EXRIO_OUT_STRING)->string = SSDO_VERSION;
     a->args = options_record(j->o, e);
     if (!a->args) return false;
-    add_attr(a, "ssdo/args", EXR_OUT_STRING)->string = a->args;
+    add_attr(a, "ssdo/args", EXRIO_OUT_STRING)->string = a->args;
     snprintf(a->camera, sizeof a->camera, "%s focal %.9g %.9g centre %.9g %.9g source %s",
              c->kind == CAMERA_ORTHOGRAPHIC ? "orthographic" : "perspective", c->fx, c->fy, c->cx, c->cy, sources[c->source]);
-    add_attr(a, "ssdo/camera", EXR_OUT_STRING)->string = a->camera;
-    add_attr(a, "ssdo/radius", EXR_OUT_FLOAT)->number = r->set.radius;
-    add_attr(a, "ssdo/device", EXR_OUT_STRING)->string = j->g.device;
-    add_attr(a, "ssdo/method", EXR_OUT_STRING)->string = r->plan.method->name;
+    add_attr(a, "ssdo/camera", EXRIO_OUT_STRING)->string = a->camera;
+    add_attr(a, "ssdo/radius", EXRIO_OUT_FLOAT)->number = r->set.radius;
+    add_attr(a, "ssdo/device", EXRIO_OUT_STRING)->string = j->g.device;
+    add_attr(a, "ssdo/method", EXRIO_OUT_STRING)->string = r->plan.method->name;
     snprintf(a->environment, sizeof a->environment, "%s", j->o->env ? base_name(j->o->env) : "white, radiance 1");
-    if (r->plan.light) add_attr(a, "ssdo/environment", EXR_OUT_STRING)->string = a->environment;
+    if (r->plan.light) add_attr(a, "ssdo/environment", EXRIO_OUT_STRING)->string = a->environment;
     // A part of our own copies nothing else from the input's.
     if (view_in_names(r->file, r->view)) {
-        exr_out_attr *views = add_attr(a, "multiView", EXR_OUT_STRINGS);
-        views->string_count = exr_attr_strings(r->file, r->resolution.main_part, "multiView", views->strings, EXR_VIEWS);
+        exrio_out_attr *views = add_attr(a, "multiView", EXRIO_OUT_STRINGS);
+        views->string_count = exrio_attr_strings(r->file, r->resolution.main_part, "multiView", views->strings, EXRIO_VIEWS);
     }
-    exr_out_attr primaries = {.name = "chromaticities", .kind = EXR_OUT_CHROMATICITIES};
-    if (exr_attr_chromaticities(r->file, r->resolution.main_part, primaries.xy)) a->attrs[a->attr_count++] = primaries;
-    add_attr(a, "ssdo/premult", EXR_OUT_STRING)->string =
+    exrio_out_attr primaries = {.name = "chromaticities", .kind = EXRIO_OUT_CHROMATICITIES};
+    if (exrio_attr_chromaticities(r->file, r->resolution.main_part, primaries.xy)) a->attrs[a->attr_count++] = primaries;
+    add_attr(a, "ssdo/premult", EXRIO_OUT_STRING)->string =
         "composite: premultiplied; occlusion, visibility: ratios; radiance, indirect: per unit coverage";
     return true;
 }
@@ -206,16 +206,16 @@ static bool is_replaced(const job *j, const frame_result *r, const char *channel
 }
 
 // The input's channels of one part that are passed through, appended to out.
-static int keep_channels(const job *j, const frame_result *r, const exr_part *part, bool merged, exr_out_channel *out)
+static int keep_channels(const job *j, const frame_result *r, const exrio_part *part, bool merged, exrio_out_channel *out)
 {
     int n = 0;
     for (int c = 0; c < part->channel_count; c++)
         if (!is_replaced(j, r, part->channels[c].name, merged))
-            out[n++] = (exr_out_channel){part->channels[c].name, part->channels[c].type, part->channels[c].data};
+            out[n++] = (exrio_out_channel){part->channels[c].name, part->channels[c].type, part->channels[c].data};
     return n;
 }
 
-static bool share_a_name(const exr_part *a, const exr_part *b)
+static bool share_a_name(const exrio_part *a, const exrio_part *b)
 {
     for (int i = 0; i < a->channel_count; i++)
         for (int k = 0; k < b->channel_count; k++)
@@ -224,10 +224,10 @@ static bool share_a_name(const exr_part *a, const exr_part *b)
 }
 
 // Deep parts are copied beside the flat ones, whosever view they are.
-static bool takes(const exr_part *part, const char *view) { return !part->deep && view_has(part, view); }
+static bool takes(const exrio_part *part, const char *view) { return !part->deep && view_has(part, view); }
 
 // A part's name is the layer of its X, Y and Z, which would be lost.
-static bool is_bare_vector(const exr_part *p)
+static bool is_bare_vector(const exrio_part *p)
 {
     bool bare = false;
     for (int c = 0; c < p->channel_count; c++) bare = bare || strcmp(p->channels[c].name, "X") == 0;
@@ -235,13 +235,13 @@ static bool is_bare_vector(const exr_part *p)
 }
 
 // The view's parts have the same windows and distinct channel names.
-static bool can_merge(const exr_file *f, const char *view)
+static bool can_merge(const exrio_file *f, const char *view)
 {
     for (int i = 1; i < f->part_count; i++)
         if (takes(&f->parts[i], view) && is_bare_vector(&f->parts[i])) return false;
     for (int i = 0; i < f->part_count; i++)
         for (int k = 0; k < i && takes(&f->parts[i], view); k++) {
-            const exr_part *a = &f->parts[i], *b = &f->parts[k];
+            const exrio_part *a = &f->parts[i], *b = &f->parts[k];
             if (!takes(b, view)) continue;
             if (!box2_equal(a->data_window, b->data_window) || !box2_equal(a->display_window, b->display_window) ||
                 share_a_name(a, b))
@@ -250,27 +250,27 @@ static bool can_merge(const exr_file *f, const char *view)
     return true;
 }
 
-static exr_out_part part_like(const options *o, const exr_file *f, int index)
+static exrio_out_part part_like(const options *o, const exrio_file *f, int index)
 {
-    const exr_part *p = &f->parts[index];
-    const exr_file *from = exr_part_file(f, &index);
-    return (exr_out_part){.name = p->name,
-                          .view = p->view,
-                          .data_window = p->data_window,
-                          .display_window = p->display_window,
-                          .pixel_aspect = p->pixel_aspect,
-                          .compression = compression_of(o, p),
-                          .attributes_from = from,
-                          .attributes_part = index};
+    const exrio_part *p = &f->parts[index];
+    const exrio_file *from = exrio_part_file(f, &index);
+    return (exrio_out_part){.name = p->name,
+                            .view = p->view,
+                            .data_window = p->data_window,
+                            .display_window = p->display_window,
+                            .pixel_aspect = p->pixel_aspect,
+                            .compression = compression_of(o, p),
+                            .attributes_from = from,
+                            .attributes_part = index};
 }
 
-static bool room(exr_out_part *part, int count, error *e)
+static bool room(exrio_out_part *part, int count, error *e)
 {
     part->channels = mem_zero((size_t)count, sizeof *part->channels, e);
     return part->channels != NULL;
 }
 
-static int total_channels(const exr_file *f)
+static int total_channels(const exrio_file *f)
 {
     int n = 0;
     for (int i = 0; i < f->part_count; i++) n += f->parts[i].channel_count;
@@ -285,7 +285,7 @@ static int view_count(const frame_result *r)
 }
 
 // Our channels go to the end of the last part.
-static void append_ours(assembly *a, exr_out_part *part)
+static void append_ours(assembly *a, exrio_out_part *part)
 {
     for (int i = 0; i < a->our_count; i++) part->channels[part->channel_count++] = a->ours[i];
     part->attributes = a->attrs;
@@ -298,25 +298,25 @@ static void append_view(book *k, assembly *a, const frame_result *r)
     assembly *first = k->views[0];
     for (int i = 0; i < a->our_count; i++) k->shared->channels[k->shared->channel_count++] = a->ours[i];
     snprintf(a->camera_name, sizeof a->camera_name, "ssdo/camera.%s", r->view);
-    add_attr(first, a->camera_name, EXR_OUT_STRING)->string = a->camera;
+    add_attr(first, a->camera_name, EXRIO_OUT_STRING)->string = a->camera;
     k->shared->attribute_count = first->attr_count;
 }
 
 // What the view's other parts say besides: cryptomatte manifests, the camera, filters.
-static void add_sources(book *k, exr_out_part *part, const frame_result *r)
+static void add_sources(book *k, exrio_out_part *part, const frame_result *r)
 {
-    exr_source *first = k->sources + k->source_count;
+    exrio_source *first = k->sources + k->source_count;
     for (int i = 0; i < r->file->part_count; i++) {
         int index = i;
-        const exr_file *from = exr_part_file(r->file, &index);
+        const exrio_file *from = exrio_part_file(r->file, &index);
         if (i != r->resolution.main_part && takes(&r->file->parts[i], r->view))
-            k->sources[k->source_count++] = (exr_source){from, index};
+            k->sources[k->source_count++] = (exrio_source){from, index};
     }
     part->also = first;
     part->also_count = (int)(k->sources + k->source_count - first);
 }
 
-static bool has_deep(const exr_file *f)
+static bool has_deep(const exrio_file *f)
 {
     for (int i = 0; i < f->part_count; i++)
         if (f->parts[i].deep) return true;
@@ -326,9 +326,9 @@ static bool has_deep(const exr_file *f)
 // The view's parts and our layers as one.
 static bool merge_parts(book *k, assembly *a, const job *j, const frame_result *r, error *e)
 {
-    const exr_file *f = r->file;
+    const exrio_file *f = r->file;
     const char *view = view_in_names(f, r->view) ? NULL : r->view;
-    exr_out_part *only = k->shared = &k->parts[k->part_count++];
+    exrio_out_part *only = k->shared = &k->parts[k->part_count++];
     *only = part_like(j->o, f, r->resolution.main_part);
     if (f->part_count > 1 && !view && !has_deep(f)) only->name = only->view = NULL;
     if (view) only->view = view;
@@ -345,8 +345,8 @@ static bool merge_parts(book *k, assembly *a, const job *j, const frame_result *
 
 static bool keep_part(book *k, const job *j, const frame_result *r, int i, error *e)
 {
-    const exr_file *f = r->file;
-    exr_out_part *part = &k->parts[k->part_count++];
+    const exrio_file *f = r->file;
+    exrio_out_part *part = &k->parts[k->part_count++];
     *part = part_like(j->o, f, i);
     if (output_keeps_chunks(j->o, f, i, &r->plan)) part->compression = f->parts[i].compression;
     if (!room(part, f->parts[i].channel_count, e)) return false;
@@ -368,7 +368,7 @@ static bool is_earlier_run(const frame_result *r, int part)
 {
     char name[64];
     our_part(r, name, sizeof name);
-    return strcmp(r->file->parts[part].name, name) == 0 && exr_attr_exists(r->file, part, "ssdo/version");
+    return strcmp(r->file->parts[part].name, name) == 0 && exrio_attr_exists(r->file, part, "ssdo/version");
 }
 
 bool output_replaces(const job *j, const frame_result *r, int part, const char *channel)
@@ -383,13 +383,13 @@ bool output_replaces(const job *j, const frame_result *r, int part, const char *
 // The view's parts as they are, and one with our layers: "ssdo", or "ssdo.left".
 static bool add_part(book *k, assembly *a, const job *j, frame_result *r, error *e)
 {
-    const exr_file *f = r->file;
+    const exrio_file *f = r->file;
     const char *view = view_in_names(f, r->view) ? NULL : r->view;
     our_part(r, a->part_name, sizeof a->part_name);
     for (int i = 0; i < f->part_count; i++) {
         if (takes(&f->parts[i], r->view) && !is_earlier_run(r, i) && !keep_part(k, j, r, i, e)) return false;
     }
-    exr_out_part *mine = k->shared = &k->parts[k->part_count++];
+    exrio_out_part *mine = k->shared = &k->parts[k->part_count++];
     *mine = part_like(j->o, f, r->resolution.main_part);
     mine->name = a->part_name;
     if (view) mine->view = view;
@@ -404,7 +404,7 @@ static bool add_part(book *k, assembly *a, const job *j, frame_result *r, error 
     return true;
 }
 
-static bool is_filtered(const exr_part *part, const frame_result *first)
+static bool is_filtered(const exrio_part *part, const frame_result *first)
 {
     for (; first; first = first->next_view)
         if (takes(part, first->view)) return true;
@@ -416,7 +416,7 @@ static bool keep_others(book *k, const job *j, const frame_result *first, error 
 {
     for (int i = 0; !j->o->keep_none && i < first->file->part_count; i++) {
         if (is_filtered(&first->file->parts[i], first)) continue;
-        const exr_part *part = &first->file->parts[i];
+        const exrio_part *part = &first->file->parts[i];
         if (part->deep && part->tiled)
             log_warn(j->log, "deep-tiles", "%s: the deep part '%s' is left out: deep tiles cannot be copied (deep scanlines can)",
                      first->file->path, part->name);
@@ -435,7 +435,7 @@ static bool add_view(book *k, const job *j, frame_result *r, bool recorded, erro
     const naming n = naming_of(j, r);
     if (j->o->main_composite) add_main(a, &n);
     if (!add_attributes(a, j, r, e)) return false;
-    if (recorded) add_attr(a, RECORD_NAME, EXR_OUT_STRING)->string = k->record;
+    if (recorded) add_attr(a, RECORD_NAME, EXRIO_OUT_STRING)->string = k->record;
     if (k->shared && view_in_names(r->file, r->view)) {
         append_view(k, a, r);
         return true;
@@ -461,7 +461,7 @@ static void put_record(book *k, const frame_result *r)
     if (!r->record.made) return;
     record_format(&r->record, record_layout(k->parts, k->part_count), k->record);
     if (k->parts[0].attribute_count) return;
-    k->first_record = (exr_out_attr){.name = RECORD_NAME, .kind = EXR_OUT_STRING, .string = k->record};
+    k->first_record = (exrio_out_attr){.name = RECORD_NAME, .kind = EXRIO_OUT_STRING, .string = k->record};
     k->parts[0].attributes = &k->first_record;
     k->parts[0].attribute_count = 1;
 }
@@ -489,8 +489,8 @@ bool output_write(const job *j, frame_result *r, const char *path, error *e)
     if (ok && !others_first) ok = keep_others(&k, j, r, e);
     if (ok) put_record(&k, r);
     const inspection look = {j, r, path};
-    const exr_inspector inspector = {look_again, &look};
-    ok = ok && exr_write_inspected(path, k.parts, k.part_count, j->threads, j->o->verify ? &inspector : NULL, e);
+    const exrio_inspector inspector = {look_again, &look};
+    ok = ok && exrio_write_inspected(path, k.parts, k.part_count, j->threads, j->o->verify ? &inspector : NULL, e);
     free_book(&k);
     return ok;
 }

@@ -6,10 +6,10 @@
 
 // Input channels that already carry names of ours are replaced if the file says we made them (ssdo/version), else ERR_INPUT
 // naming --prefix. Called before any pixel is read, so that a long job does not fail at its end. view: the one to be written.
-bool output_check_names(const options *o, const exr_file *file, const char *view, const plan *p, error *e);
+bool output_check_names(const options *o, const exrio_file *file, const char *view, const plan *p, error *e);
 
 // --layout multipart: true if the part goes through as stored, so that its channels need not be read for writing.
-bool output_keeps_chunks(const options *o, const exr_file *file, int part, const plan *p);
+bool output_keeps_chunks(const options *o, const exrio_file *file, int part, const plan *p);
 
 // Whether a channel of the input's part is made anew, or left out with what an earlier run made, instead of being passed through.
 // r: the first view, once it was written.

@@ -24,7 +24,7 @@ static inputs inputs_of(const options *o, const resolution *r)
 static bool asked(const plan *p, layer_id l) { return p->layers & 1u << l; }
 
 // Drops a layer that cannot be made, or refuses when it was asked for by name.
-static bool cannot(plan *p, const options *o, const exr_file *file, layer_id l, const char *channel, const char *because,
+static bool cannot(plan *p, const options *o, const exrio_file *file, layer_id l, const char *channel, const char *because,
                    log_t *log, error *e)
 {
     if (!asked(p, l)) return true;
@@ -44,7 +44,7 @@ static const char *bounce_of(const plan *p, const options *o)
     return name && strcmp(name, "none") != 0 ? name : NULL;
 }
 
-static bool drop_impossible(plan *p, const options *o, const exr_file *file, const inputs *in, log_t *log, error *e)
+static bool drop_impossible(plan *p, const options *o, const exrio_file *file, const inputs *in, log_t *log, error *e)
 {
     const char *no_bounce = o->bounce ? "--bounce none" : "this method has no bounce of its own; --bounce ssdo or vpl adds one";
     if (!bounce_of(p, o) && !cannot(p, o, file, LAYER_INDIRECT, NULL, no_bounce, log, e)) return false;
@@ -94,7 +94,7 @@ static void list_steps(plan *p, const options *o, const inputs *in)
     step(p, "irradiance", p->irradiance, "the method gives no direction: SH irradiance x occlusion",
          p->method->fills_radiance ? "the method makes radiance itself" : "no layer needs light");
     step(p, "blur", p->blur, "noise of the sample pattern", p->method->fills_sh ? "the method filters itself" : "--blur none");
-    step(p, "look", p->look, "scale, contrast and the bounds of a scalar method", "scale and contrast are 1");
+    step(p, "tone", p->tone, "scale, contrast and the bounds of a scalar method", "scale and contrast are 1");
     step(p, "bounce", p->bounce, "indirect light", !in->albedo && p->relight ? "no albedo" : "no layer needs it");
     step(p, "edges", p->edges, "partly covered pixels", "no layer but data of whole pixels");
     step(p, "specular", p->specular, "roughness and environment",
@@ -107,10 +107,10 @@ static void list_steps(plan *p, const options *o, const inputs *in)
 }
 
 // What --error cannot be with.
-static bool check_rounds(const method *m, const options *o, error *e)
+static bool check_adaptive(const method *m, const options *o, error *e)
 {
     if (o->error <= 0.0) return true;
-    if (!m->has_rounds)
+    if (!m->adaptive)
         return err_set(e, ERR_USAGE, NULL, NULL,
                        "--error works with the methods arc, gtao and bitmask, not with %s; give it a number of --samples",
                        m->name);
@@ -122,7 +122,7 @@ static bool check_rounds(const method *m, const options *o, error *e)
     return true;
 }
 
-bool plan_make(const options *o, const exr_file *file, const resolution *r, plan *p, log_t *log, error *e)
+bool plan_make(const options *o, const exrio_file *file, const resolution *r, plan *p, log_t *log, error *e)
 {
     const char *name = o->from_sh ? "s3ho" : o->method ? o->method : methods[METHOD_DEFAULT].name;
     char all[METHOD_NAMES];
@@ -133,7 +133,7 @@ bool plan_make(const options *o, const exr_file *file, const resolution *r, plan
     if (p->method->needs_mesh && !o->mesh)
         return err_set(e, ERR_USAGE, NULL, NULL, "--method %s needs the scene's surfaces; name them with --mesh FILE.obj", name);
     if (o->mesh && !p->method->needs_mesh) log_warn(log, "mesh", "--mesh is not used: only --method raytrace does");
-    if (!check_rounds(p->method, o, e) || !layers_parse(o->layers, &p->layers, e)) return false;
+    if (!check_adaptive(p->method, o, e) || !layers_parse(o->layers, &p->layers, e)) return false;
     inputs in = inputs_of(o, r);
     p->relight = in.env || !in.beauty;
     if (!drop_impossible(p, o, file, &in, log, e)) return false;
@@ -153,7 +153,7 @@ bool plan_make(const options *o, const exr_file *file, const resolution *r, plan
     p->specular = in.roughness && in.env && (relit || asked(p, LAYER_SPECULAR));
     p->light = light || (p->bounce && traces_bounce(p, o)) || p->want_visibility || p->specular;
     p->blur = (o->blur < 0 ? p->method->blur : o->blur) > 0 && !p->method->fills_sh;
-    p->look = o->contrast != 1.0 || o->scale != 1.0 || !p->method->fills_radiance;
+    p->tone = o->contrast != 1.0 || o->scale != 1.0 || !p->method->fills_radiance;
     p->edges = true;
     p->depthmask = asked(p, LAYER_DEPTHMASK) || (p->composite && o->depthmask_strength > 0.0);
 

@@ -24,7 +24,7 @@ typedef struct plan {
     bool relight;    // the composite is lit by us; otherwise the beauty is occluded
     bool visibility_mode;
     bool want_radiance, want_visibility, want_bent, want_error;
-    bool irradiance, blur, look, bounce, edges, specular, depthmask, composite;
+    bool irradiance, blur, tone, bounce, edges, specular, depthmask, composite;
     bool bounce_in_composite;
     bool from_sh;            // the method's SH vector is read from the file
     const char *bounce_name; // NULL: the method's own
@@ -34,6 +34,6 @@ typedef struct plan {
 
 // Decides. A default layer that cannot be made is left out with a warning; one named in --layers is ERR_INPUT naming the channel
 // that is missing.
-bool plan_make(const options *o, const exr_file *file, const resolution *r, plan *out, log_t *log, error *e);
+bool plan_make(const options *o, const exrio_file *file, const resolution *r, plan *out, log_t *log, error *e);
 
 #endif

@@ -8,13 +8,13 @@
 #include "base/half.h"
 #include "base/mem.h"
 #include "light/primaries.h"
-#include "pipeline/sheet.h"
+#include "pipeline/canvas.h"
 #include "plugin/colour.h"
 #include "plugin/images.h"
 
 enum { LABEL = 24, GAP = 6, COLUMNS = 2, EXPOSURE_SAMPLES = 4096, NARROW = 320, WIDE = 960, BACKGROUND = 40 };
 
-// From pixels to the sheet: blocks of `reduce` pixels squared become one dot, each drawn `enlarge` times as large. One of them
+// From pixels to the canvas: blocks of `reduce` pixels squared become one dot, each drawn `enlarge` times as large. One of them
 // is 1.
 typedef struct zoom {
     int reduce, enlarge;
@@ -63,7 +63,7 @@ static float exposure(const frame_result *r, layer_id l)
 static float alpha_at(const frame_result *r, size_t i)
 {
     channel_ref ref = r->resolution.channels[ROLE_ALPHA][0];
-    const exr_channel *c = &r->file->parts[ref.part].channels[ref.channel];
+    const exrio_channel *c = &r->file->parts[ref.part].channels[ref.channel];
     if (c->type == SAMPLE_HALF) return half_to_float(((const uint16_t *)c->data)[i]);
     return c->type == SAMPLE_FLOAT ? ((const float *)c->data)[i] : 1.0f;
 }
@@ -124,7 +124,7 @@ static bool develop(const options *o, const frame_result *r, float *rgb, size_t 
     double xy[8];
     mat3 m;
     if (has_display(o)) return colour_to_display(o->ocio, o->display, o->view, rgb, n, e);
-    bool other = exr_attr_chromaticities(r->file, r->resolution.main_part, xy) && !primaries_equal(xy, primaries_rec709) &&
+    bool other = exrio_attr_chromaticities(r->file, r->resolution.main_part, xy) && !primaries_equal(xy, primaries_rec709) &&
                  primaries_between(xy, primaries_rec709, &m);
     for (size_t i = 0; i < n; i++) {
         float *v = rgb + 3 * i;
@@ -138,7 +138,7 @@ static bool develop(const options *o, const frame_result *r, float *rgb, size_t 
 }
 
 // One cell: its dots as linear light without alpha or, for other layers, as codes already; then all of them onto the sheet.
-static bool draw_layer(sheet *s, const options *o, const frame_result *r, layer_id l, int x0, int y0, const zoom *z, float gain,
+static bool draw_layer(canvas *s, const options *o, const frame_result *r, layer_id l, int x0, int y0, const zoom *z, float gain,
                        error *e)
 {
     size_t n = (size_t)z->width * (size_t)z->height;
@@ -158,17 +158,17 @@ static bool draw_layer(sheet *s, const options *o, const frame_result *r, layer_
     // The checkerboard goes through no view: it looks the same everywhere, also in the legend.
     for (size_t i = 0; ok && i < n; i++) {
         int x = (int)(i % (size_t)z->width), y = (int)(i / (size_t)z->width);
-        float checker = (float)sheet_checker(x, y) / 255.0f;
+        float checker = (float)canvas_checker(x, y) / 255.0f;
         uint8_t c[3];
         for (size_t k = 0; k < 3; k++) c[k] = share((1.0f - open[i]) * rgb[3 * i + k] + open[i] * checker);
-        sheet_put(s, x0 + x, y0 + y, c);
+        canvas_put(s, x0 + x, y0 + y, c);
     }
     free(rgb);
     return ok;
 }
 
 // The radius and its length in the cells; the checkerboard; what light went through. Below `y`, over `width` columns.
-static void draw_legend(sheet *s, const options *o, const frame_result *r, int y, int width, const zoom *z)
+static void draw_legend(canvas *s, const options *o, const frame_result *r, int y, int width, const zoom *z)
 {
     static const uint8_t ink[3] = {235, 235, 235};
     char text[96];
@@ -177,23 +177,23 @@ static void draw_legend(sheet *s, const options *o, const frame_result *r, int y
     int length = (int)lrint(fmin(pixels * z->enlarge / z->reduce, 1e6)), x = GAP;
     snprintf(text, sizeof text, "radius %.3g = %.0f px%s%.24s", r->set.radius, pixels, r->view ? ", view " : "",
              r->view ? r->view : "");
-    sheet_text(s, x, y + (LABEL - SHEET_TEXT_HEIGHT) / 2, text);
+    canvas_text(s, x, y + (LABEL - CANVAS_TEXT_HEIGHT) / 2, text);
     y += LABEL;
     bool whole = length <= width; // otherwise the bar has no right end
     int shown = whole ? length : width;
-    sheet_fill(s, x, y + 6, shown > 0 ? shown : 1, 2, ink);
-    sheet_fill(s, x, y, 2, 14, ink);
-    if (whole && length > 2) sheet_fill(s, x + length - 2, y, 2, 14, ink);
+    canvas_fill(s, x, y + 6, shown > 0 ? shown : 1, 2, ink);
+    canvas_fill(s, x, y, 2, 14, ink);
+    if (whole && length > 2) canvas_fill(s, x + length - 2, y, 2, 14, ink);
     y += LABEL;
     for (int i = 0; i < 32 * 16; i++) {
-        uint8_t v = sheet_checker(i % 32, i / 32);
-        sheet_put(s, x + i % 32, y + i / 32, (uint8_t[3]){v, v, v});
+        uint8_t v = canvas_checker(i % 32, i / 32);
+        canvas_put(s, x + i % 32, y + i / 32, (uint8_t[3]){v, v, v});
     }
-    sheet_text(s, x + 32 + SHEET_LETTER, y + 1, "no surface");
+    canvas_text(s, x + 32 + CANVAS_LETTER, y + 1, "no surface");
     if (!has_display(o)) return;
     snprintf(text, sizeof text, "light: view %.24s%s%.24s", o->view ? o->view : "default", o->display ? ", display " : "",
              o->display ? o->display : "");
-    sheet_text(s, x, y + LABEL, text);
+    canvas_text(s, x, y + LABEL, text);
 }
 
 bool preview_write(const options *o, const frame_result *r, const char *path, error *e)
@@ -203,8 +203,8 @@ bool preview_write(const options *o, const frame_result *r, const char *path, er
     for (int l = 0; l < LAYER_COUNT; l++) cells += r->layers[l] != NULL;
     int columns = cells < COLUMNS ? cells : COLUMNS, rows = (cells + COLUMNS - 1) / COLUMNS;
     int below = rows * (z.height + LABEL + GAP) + GAP;
-    sheet s;
-    if (!sheet_make(&s, columns * (z.width + GAP) + GAP, below + (has_display(o) ? 4 : 3) * LABEL, BACKGROUND, e)) return false;
+    canvas s;
+    if (!canvas_make(&s, columns * (z.width + GAP) + GAP, below + (has_display(o) ? 4 : 3) * LABEL, BACKGROUND, e)) return false;
     bool ok = true;
     for (int l = 0, cell = 0; ok && l < LAYER_COUNT; l++) {
         if (!r->layers[l]) continue;
@@ -212,7 +212,7 @@ bool preview_write(const options *o, const frame_result *r, const char *path, er
         float gain = exposure(r, (layer_id)l);
         char label[64];
         snprintf(label, sizeof label, gain == 1.0f ? "%s" : "%s x%.2g", layer_table[l].name, (double)gain);
-        sheet_text(&s, x, y + (LABEL - SHEET_TEXT_HEIGHT) / 2, label);
+        canvas_text(&s, x, y + (LABEL - CANVAS_TEXT_HEIGHT) / 2, label);
         ok = draw_layer(&s, o, r, (layer_id)l, x, y + LABEL, &z, gain, e);
         cell++;
     }
@@ -220,6 +220,6 @@ bool preview_write(const options *o, const frame_result *r, const char *path, er
     char record[DIGEST_TEXT + 1] = "none";
     if (r->record.made) digest_format(r->record.preview, record);
     ok = ok && images_write_png(path, s.width, s.height, s.rgb, RECORD_NAME, record, e);
-    sheet_free(&s);
+    canvas_free(&s);
     return ok;
 }

@@ -87,7 +87,7 @@ static void point_along(const gbuffer *gb, size_t first, float *v, size_t pixels
 
 static size_t put(const float *v, size_t n, sample_type type, void *to, size_t first)
 {
-    if (type == SAMPLE_HALF) return exr_to_half(v, 1, n, (uint16_t *)to + first);
+    if (type == SAMPLE_HALF) return exrio_to_half(v, 1, n, (uint16_t *)to + first);
     memcpy((float *)to + first, v, n * sizeof *v);
     return 0;
 }

@@ -29,7 +29,7 @@ static bool put_settings(digester *d, const job *j, error *e)
     if (!options_digest(j->o, d, e)) return false;
     digest_put_text(d, ssdo_decides);
     if (folder) put_shader_folder(d, folder);
-    snprintf(radius, sizeof radius, "%a", (double)(float)j->shot_radius);
+    snprintf(radius, sizeof radius, "%a", (double)(float)j->sequence_radius);
     digest_put_text(d, radius);
     return true;
 }
@@ -39,7 +39,7 @@ static content content_in(const run_file *file, int frame, bool exact)
     char path[FILE_PATH];
     if (file->known) return file->content;
     if (!run_file_path(file, frame, path, sizeof path)) return (content){0};
-    return content_read(path, exr_head_bytes(path), exact);
+    return content_read(path, exrio_head_bytes(path), exact);
 }
 
 static bool put_frame(const job *j, int frame, digester *sampled, digester *exact, error *e)
@@ -111,12 +111,12 @@ static void add_channel(uint8_t sum[sizeof(digest)], const char *name, sample_ty
     for (size_t i = 0; i < sizeof c; i++) sum[i] = (uint8_t)(sum[i] + c.bytes[i]);
 }
 
-digest record_layout(const exr_out_part *parts, int count)
+digest record_layout(const exrio_out_part *parts, int count)
 {
     digester *d = digest_begin(NULL);
     if (!d) return (digest){0};
     for (int i = 0; i < count; i++) {
-        const exr_out_part *p = &parts[i];
+        const exrio_out_part *p = &parts[i];
         uint8_t sum[sizeof(digest)] = {0};
         put_part(d, p->name, p->view, p->data_window, p->display_window, p->compression);
         for (int c = 0; c < p->channel_count; c++) add_channel(sum, p->channels[c].name, p->channels[c].type);
@@ -127,24 +127,24 @@ digest record_layout(const exr_out_part *parts, int count)
     return result;
 }
 
-static bool describe_part(const exr_part *from, exr_out_part *to)
+static bool describe_part(const exrio_part *from, exrio_out_part *to)
 {
-    *to = (exr_out_part){.name = from->name,
-                         .view = from->view,
-                         .data_window = from->data_window,
-                         .display_window = from->display_window,
-                         .compression = from->compression,
-                         .channel_count = from->channel_count};
+    *to = (exrio_out_part){.name = from->name,
+                           .view = from->view,
+                           .data_window = from->data_window,
+                           .display_window = from->display_window,
+                           .compression = from->compression,
+                           .channel_count = from->channel_count};
     to->channels = mem_zero((size_t)from->channel_count, sizeof *to->channels, NULL);
     for (int c = 0; to->channels && c < from->channel_count; c++)
-        to->channels[c] = (exr_out_channel){from->channels[c].name, from->channels[c].type, NULL};
+        to->channels[c] = (exrio_out_channel){from->channels[c].name, from->channels[c].type, NULL};
     return to->channels != NULL;
 }
 
-digest record_layout_of_file(const exr_file *file)
+digest record_layout_of_file(const exrio_file *file)
 {
     digest result = {0};
-    exr_out_part *parts = mem_zero((size_t)file->part_count, sizeof *parts, NULL);
+    exrio_out_part *parts = mem_zero((size_t)file->part_count, sizeof *parts, NULL);
     bool ok = parts != NULL;
     for (int i = 0; ok && i < file->part_count; i++) ok = describe_part(&file->parts[i], &parts[i]);
     if (ok) result = record_layout(parts, file->part_count);

@@ -27,8 +27,8 @@ typedef struct frame_record {
 bool record_make(const struct job *j, int frame, frame_record *out, error *e);
 
 // What the parts of a file that will be written, or was, look like from outside.
-digest record_layout(const exr_out_part *parts, int count);
-digest record_layout_of_file(const exr_file *file);
+digest record_layout(const exrio_out_part *parts, int count);
+digest record_layout_of_file(const exrio_file *file);
 
 void record_format(const frame_record *r, digest layout, char text[RECORD_TEXT + 1]);
 // True if the text says that a file of this layout was made as `r` says.

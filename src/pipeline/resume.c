@@ -7,10 +7,10 @@
 #include "base/outfile.h"
 #include "pipeline/extras.h"
 
-static void warn_device(const job *j, const exr_file *f, int part)
+static void warn_device(const job *j, const exrio_file *f, int part)
 {
     const char *device;
-    if (exr_attr_string(f, part, "ssdo/device", &device) && strcmp(device, j->g.device) != 0)
+    if (exrio_attr_string(f, part, "ssdo/device", &device) && strcmp(device, j->g.device) != 0)
         log_warn(
             j->log, "device",
             "%s was made on '%s' and this run is on '%s': only one device gives the same bytes for all frames; --device chooses, "
@@ -20,15 +20,15 @@ static void warn_device(const job *j, const exr_file *f, int part)
 
 void resume_check_device(const job *j, const char *output)
 {
-    exr_file *f = NULL;
+    exrio_file *f = NULL;
     error ignored = {0};
     const char *made;
-    if (access(output, F_OK) != 0 || !exr_file_open(output, &f, &ignored)) return;
+    if (access(output, F_OK) != 0 || !exrio_file_open(output, &f, &ignored)) return;
     char *args = options_record(j->o, &ignored);
     for (int p = 0; args && p < f->part_count; p++)
-        if (exr_attr_string(f, p, "ssdo/args", &made) && strcmp(made, args) == 0) warn_device(j, f, p);
+        if (exrio_attr_string(f, p, "ssdo/args", &made) && strcmp(made, args) == 0) warn_device(j, f, p);
     free(args);
-    exr_file_close(f);
+    exrio_file_close(f);
 }
 
 static bool exist(const char *const *paths, int count)
@@ -39,29 +39,29 @@ static bool exist(const char *const *paths, int count)
 }
 
 // The first part and one of ours say so; what others say is of an earlier run.
-static bool is_recorded(const exr_file *f, const frame_record *record)
+static bool is_recorded(const exrio_file *f, const frame_record *record)
 {
     digest layout = record_layout_of_file(f);
     bool first = false, ours = false;
     for (int p = 0; p < f->part_count; p++) {
         const char *text;
-        bool fits = exr_attr_string(f, p, RECORD_NAME, &text) && record_fits(record, layout, text);
+        bool fits = exrio_attr_string(f, p, RECORD_NAME, &text) && record_fits(record, layout, text);
         first = first || (fits && p == 0);
-        ours = ours || (fits && exr_attr_exists(f, p, "ssdo/version"));
+        ours = ours || (fits && exrio_attr_exists(f, p, "ssdo/version"));
     }
     return first && ours;
 }
 
 static bool is_done(const job *j, const frame_record *record, const char *output)
 {
-    exr_file *f = NULL;
+    exrio_file *f = NULL;
     error ignored = {0};
-    if (access(output, F_OK) != 0 || !exr_file_open(output, &f, &ignored)) return false;
+    if (access(output, F_OK) != 0 || !exrio_file_open(output, &f, &ignored)) return false;
     for (int p = 0; p < f->part_count; p++)
         for (int c = 0; c < f->parts[p].channel_count; c++) f->parts[p].channels[c].wanted = true;
-    bool done = is_recorded(f, record) && exr_file_load(f, j->threads, &ignored);
+    bool done = is_recorded(f, record) && exrio_file_load(f, j->threads, &ignored);
     for (int p = 0; done && p < f->part_count; p++) warn_device(j, f, p);
-    exr_file_close(f);
+    exrio_file_close(f);
     return done;
 }
 

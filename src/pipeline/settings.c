@@ -11,7 +11,7 @@ double settings_radius(const job *j, const gbuffer *gb)
 {
     const options *o = j->o;
     if (o->radius_unit == RADIUS_WORLD) return o->radius;
-    if (o->radius_unit == RADIUS_AUTO) return j->shot_radius > 0.0 ? j->shot_radius : gbuffer_auto_radius(gb);
+    if (o->radius_unit == RADIUS_AUTO) return j->sequence_radius > 0.0 ? j->sequence_radius : gbuffer_auto_radius(gb);
     // Pixels are turned into one world distance at the frame's median depth, so that the radius is the same on all surfaces.
     double per_unit = gb->camera.fx;
     return gb->camera.kind == CAMERA_ORTHOGRAPHIC ? o->radius / per_unit : o->radius * frame_median_depth(gb) / per_unit;

@@ -13,7 +13,7 @@ enum { AT_A_TIME = 8 }; // channels in memory, of each file
 typedef struct verification {
     const job *j;
     const frame_result *r;
-    exr_file *in, *out;
+    exrio_file *in, *out;
     const char *output;
     int channels;
     error *e;
@@ -28,7 +28,7 @@ static bool fail(const verification *v, const char *what, const char *name)
         what, name);
 }
 
-static exr_channel *find_channel(exr_part *part, const char *name)
+static exrio_channel *find_channel(exrio_part *part, const char *name)
 {
     for (int c = 0; c < part->channel_count; c++)
         if (strcmp(part->channels[c].name, name) == 0) return &part->channels[c];
@@ -36,33 +36,33 @@ static exr_channel *find_channel(exr_part *part, const char *name)
 }
 
 // Where a channel of the part must be: in the part of its name, else in its view's, else in any.
-static exr_part *part_with(const verification *v, const exr_part *in, const char *channel)
+static exrio_part *part_with(const verification *v, const exrio_part *in, const char *channel)
 {
     for (int rule = 0; rule < 3; rule++)
         for (int p = 0; p < v->out->part_count; p++) {
-            exr_part *out = &v->out->parts[p];
+            exrio_part *out = &v->out->parts[p];
             bool fits = rule == 0 ? strcmp(out->name, in->name) == 0 : rule == 1 ? strcmp(out->view, in->view) == 0 : true;
             if (fits && out->deep == in->deep && find_channel(out, channel)) return out;
         }
     return NULL;
 }
 
-static void drop(exr_channel *c)
+static void drop(exrio_channel *c)
 {
     if (!c) return;
     free(c->data);
     c->data = NULL, c->wanted = false;
 }
 
-static bool load(const verification *v, exr_file *file)
+static bool load(const verification *v, exrio_file *file)
 {
     error read = {0};
-    if (exr_file_load(file, v->j->threads, &read)) return true;
+    if (exrio_file_load(file, v->j->threads, &read)) return true;
     if (read.code == ERR_MEMORY || file == v->in) return err_set(v->e, read.code, read.file, read.channel, "%s", read.message);
     return err_set(v->e, ERR_OUTPUT, v->output, read.channel, "--verify: the written file %s; it was not kept", read.message);
 }
 
-static bool same_samples(const exr_part *in, const exr_channel *a, const exr_part *out, const exr_channel *b)
+static bool same_samples(const exrio_part *in, const exrio_channel *a, const exrio_part *out, const exrio_channel *b)
 {
     size_t n = (size_t)box2_width(in->data_window) * (size_t)box2_height(in->data_window);
     return a->type == b->type && box2_equal(in->data_window, out->data_window) && a->data && b->data &&
@@ -72,13 +72,13 @@ static bool same_samples(const exr_part *in, const exr_channel *a, const exr_par
 // Some channels of a part, from `first` on.
 static bool check_some(verification *v, int part, int first, int *next)
 {
-    exr_part *in = &v->in->parts[part];
-    exr_channel *pairs[AT_A_TIME][2];
-    exr_part *parts[AT_A_TIME];
+    exrio_part *in = &v->in->parts[part];
+    exrio_channel *pairs[AT_A_TIME][2];
+    exrio_part *parts[AT_A_TIME];
     int n = 0, c = first;
     bool ok = true;
     for (; ok && c < in->channel_count && n < AT_A_TIME; c++) {
-        exr_channel *a = &in->channels[c];
+        exrio_channel *a = &in->channels[c];
         if (output_replaces(v->j, v->r, part, a->name)) continue;
         parts[n] = part_with(v, in, a->name);
         if (!parts[n]) return fail(v, "channel", a->name);
@@ -96,13 +96,13 @@ static bool check_some(verification *v, int part, int first, int *next)
 
 static bool check_deep(verification *v, int part)
 {
-    const exr_part *in = &v->in->parts[part];
+    const exrio_part *in = &v->in->parts[part];
     if (in->tiled) return true; // left out, with a word
     int own = part;
-    const exr_file *from = exr_part_file(v->in, &own);
+    const exrio_file *from = exrio_part_file(v->in, &own);
     for (int p = 0; p < v->out->part_count; p++)
         if (v->out->parts[p].deep && strcmp(v->out->parts[p].name, in->name) == 0)
-            return exr_deep_same(from, own, v->out, p) || fail(v, "deep part", in->name);
+            return exrio_deep_same(from, own, v->out, p) || fail(v, "deep part", in->name);
     return fail(v, "deep part", in->name);
 }
 
@@ -122,10 +122,10 @@ static bool check_channels(verification *v)
 // The part of the output that has what the input's part had, by the first of its channels that passes through; -1 for none.
 static int home_of(const verification *v, int part)
 {
-    const exr_part *in = &v->in->parts[part];
+    const exrio_part *in = &v->in->parts[part];
     for (int c = 0; !v->j->o->keep_none && c < in->channel_count; c++)
         if (!output_replaces(v->j, v->r, part, in->channels[c].name)) {
-            const exr_part *out = part_with(v, in, in->channels[c].name);
+            const exrio_part *out = part_with(v, in, in->channels[c].name);
             return out ? (int)(out - v->out->parts) : -1;
         }
     for (int p = 0; v->j->o->keep_none && p < v->out->part_count; p++)
@@ -143,7 +143,7 @@ static bool is_main(const verification *v, int part)
 // The parts that went into one of the output's, the one with the position or depth first: its attributes count.
 static bool check_attributes(verification *v)
 {
-    exr_source *sources = mem_zero((size_t)v->in->part_count, sizeof *sources, v->e);
+    exrio_source *sources = mem_zero((size_t)v->in->part_count, sizeof *sources, v->e);
     bool ok = sources != NULL;
     for (int home = 0; ok && home < v->out->part_count; home++) {
         int count = 0;
@@ -151,10 +151,10 @@ static bool check_attributes(verification *v)
             for (int p = 0; p < v->in->part_count; p++) {
                 if (is_main(v, p) == (rank == 1) || home_of(v, p) != home) continue;
                 int own = p;
-                const exr_file *from = exr_part_file(v->in, &own);
-                sources[count++] = (exr_source){from, own};
+                const exrio_file *from = exrio_part_file(v->in, &own);
+                sources[count++] = (exrio_source){from, own};
             }
-        const char *name = exr_attributes_differ(sources, count, v->out, home);
+        const char *name = exrio_attributes_differ(sources, count, v->out, home);
         if (name) ok = fail(v, "attribute", name);
     }
     free(sources);
@@ -163,14 +163,14 @@ static bool check_attributes(verification *v)
 
 static bool open_both(verification *v, const char *written)
 {
-    const exr_file *file = v->r->file;
+    const exrio_file *file = v->r->file;
     int count = file->member_count ? file->member_count : 1;
     const char **paths = mem_zero((size_t)count, sizeof *paths, v->e);
     if (!paths) return false;
     for (int i = 0; i < count; i++) paths[i] = file->member_count ? file->members[i]->path : file->path;
     error read = {0};
-    bool ok = exr_file_open_all(paths, count, &v->in, v->e);
-    if (ok && !exr_file_open(written, &v->out, &read))
+    bool ok = exrio_file_open_all(paths, count, &v->in, v->e);
+    if (ok && !exrio_file_open(written, &v->out, &read))
         ok = err_set(v->e, read.code == ERR_MEMORY ? ERR_MEMORY : ERR_OUTPUT, v->output, NULL,
                      "--verify: the written file %s; it was not kept", read.message);
     if (ok && v->in->part_count != file->part_count)
@@ -184,7 +184,7 @@ bool verify_written(const job *j, const frame_result *r, const char *written, co
     verification v = {.j = j, .r = r, .output = output, .e = e};
     bool ok = open_both(&v, written) && check_channels(&v) && check_attributes(&v);
     if (ok) log_info(j->log, "--verify: %d channels and all attributes are the input's, bit by bit", v.channels);
-    exr_file_close(v.in);
-    exr_file_close(v.out);
+    exrio_file_close(v.in);
+    exrio_file_close(v.out);
     return ok;
 }

@@ -10,11 +10,11 @@ static bool listed(const char *const *names, int count, const char *view)
     return false;
 }
 
-static int all_views(const exr_file *file, const char *names[VIEWS_MAX])
+static int all_views(const exrio_file *file, const char *names[VIEWS_MAX])
 {
     int count = 0;
     for (int i = 0; i < file->part_count; i++) {
-        const exr_part *p = &file->parts[i];
+        const exrio_part *p = &file->parts[i];
         if (p->deep) continue;
         const char *const own[1] = {p->view}, *const *views = p->view[0] ? own : (const char *const *)p->views;
         for (int v = 0; v < (p->view[0] ? 1 : p->view_count) && count < VIEWS_MAX; v++)
@@ -32,7 +32,7 @@ static bool ends_in_view(const char *name, const char *view, size_t *before)
     return true;
 }
 
-int views_of(const exr_file *file, const options *o, const char *names[VIEWS_MAX])
+int views_of(const exrio_file *file, const options *o, const char *names[VIEWS_MAX])
 {
     int count = all_views(file, names);
     size_t before;
@@ -52,12 +52,12 @@ const char *view_layer_within(const options *o, const char *view, char *buf, siz
     return before ? buf : NULL;
 }
 
-bool view_has(const exr_part *part, const char *view)
+bool view_has(const exrio_part *part, const char *view)
 {
     return !view || strcmp(part->view, view) == 0 || listed((const char *const *)part->views, part->view_count, view);
 }
 
-bool view_in_names(const exr_file *file, const char *view)
+bool view_in_names(const exrio_file *file, const char *view)
 {
     for (int i = 0; view && i < file->part_count; i++)
         if (listed((const char *const *)file->parts[i].views, file->parts[i].view_count, view)) return true;
@@ -65,17 +65,17 @@ bool view_in_names(const exr_file *file, const char *view)
 }
 
 // The default view is the first of the first part that has any.
-static bool is_default(const exr_file *file, const char *view)
+static bool is_default(const exrio_file *file, const char *view)
 {
     for (int i = 0; i < file->part_count; i++)
         if (file->parts[i].view_count) return strcmp(file->parts[i].views[0], view) == 0;
     return false;
 }
 
-void view_name(const exr_file *file, const char *view, const char *name, char *out, size_t size)
+void view_name(const exrio_file *file, const char *view, const char *name, char *out, size_t size)
 {
     if (view_in_names(file, view))
-        exr_name_with_view(name, view, is_default(file, view), out, size);
+        exrio_name_with_view(name, view, is_default(file, view), out, size);
     else
         snprintf(out, size, "%s", name);
 }

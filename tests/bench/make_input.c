@@ -47,7 +47,7 @@ int main(int argc, char **argv)
     view_scene(&v, &s);
     if (!scene_picture(&s, &v, &p, &e)) return 1;
     size_t n = (size_t)p.width * (size_t)p.height;
-    exr_out_channel channels[CHANNELS];
+    exrio_out_channel channels[CHANNELS];
     for (int c = 0; c < CHANNELS; c++) {
         bool half = c < 9;
         void *data = malloc(n * (half ? 2 : 4));
@@ -60,16 +60,16 @@ int main(int argc, char **argv)
             float_plane(p.position, c - 9, n, data);
         else
             memcpy(data, p.depth, n * 4);
-        channels[c] = (exr_out_channel){names[c], half ? SAMPLE_HALF : SAMPLE_FLOAT, data};
+        channels[c] = (exrio_out_channel){names[c], half ? SAMPLE_HALF : SAMPLE_FLOAT, data};
     }
-    exr_out_part part = {.data_window = v.data_window,
-                         .display_window = v.display_window,
-                         .pixel_aspect = 1.0f,
-                         .compression = EXR_COMPRESSION_ZIP,
-                         .channels = channels,
-                         .channel_count = CHANNELS};
+    exrio_out_part part = {.data_window = v.data_window,
+                           .display_window = v.display_window,
+                           .pixel_aspect = 1.0f,
+                           .compression = EXR_COMPRESSION_ZIP,
+                           .channels = channels,
+                           .channel_count = CHANNELS};
     char text[1024];
-    bool ok = exr_write(argv[3], &part, 1, 2, &e);
+    bool ok = exrio_write(argv[3], &part, 1, 2, &e);
     err_format(&e, text, sizeof text);
     if (!ok) fprintf(stderr, "make_input: %s\n", text);
     return ok ? 0 : 1;

@@ -16,31 +16,31 @@ static double cpu_ms(void)
 
 static bool copy(const char *from, const char *to, double ms[2], error *e)
 {
-    exr_file *f = NULL;
-    exr_out_channel *channels = NULL;
+    exrio_file *f = NULL;
+    exrio_out_channel *channels = NULL;
     bool ok = false;
     double begun = cpu_ms();
-    if (!exr_file_open(from, &f, e)) return false;
-    exr_part *p = &f->parts[0];
+    if (!exrio_file_open(from, &f, e)) return false;
+    exrio_part *p = &f->parts[0];
     for (int c = 0; c < p->channel_count; c++) p->channels[c].wanted = true;
     channels = mem_zero((size_t)p->channel_count, sizeof *channels, e);
-    if (!channels || !exr_file_load(f, 2, e)) goto out;
+    if (!channels || !exrio_file_load(f, 2, e)) goto out;
     ms[0] = cpu_ms() - begun;
     for (int c = 0; c < p->channel_count; c++)
-        channels[c] = (exr_out_channel){p->channels[c].name, p->channels[c].type, p->channels[c].data};
-    exr_out_part part = {.data_window = p->data_window,
-                         .display_window = p->display_window,
-                         .pixel_aspect = p->pixel_aspect,
-                         .compression = p->compression,
-                         .channels = channels,
-                         .channel_count = p->channel_count,
-                         .attributes_from = f};
+        channels[c] = (exrio_out_channel){p->channels[c].name, p->channels[c].type, p->channels[c].data};
+    exrio_out_part part = {.data_window = p->data_window,
+                           .display_window = p->display_window,
+                           .pixel_aspect = p->pixel_aspect,
+                           .compression = p->compression,
+                           .channels = channels,
+                           .channel_count = p->channel_count,
+                           .attributes_from = f};
     begun = cpu_ms();
-    ok = exr_write(to, &part, 1, 2, e);
+    ok = exrio_write(to, &part, 1, 2, e);
     ms[1] = cpu_ms() - begun;
 out:
     free(channels);
-    exr_file_close(f);
+    exrio_file_close(f);
     return ok;
 }
 

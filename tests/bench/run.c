@@ -80,9 +80,9 @@ static bool store_sh(rig *r, const bench_scene *b, const bench_row *row, const p
     size_t n = (size_t)b->gb.width * (size_t)b->gb.height;
     if (!rig_run(r, &b->gb, row->m, set, 7u << LAYER_SH_0, &f, e)) return false;
     for (int k = 0; k < 3 && e->code == ERR_NONE; k++) {
-        r->stored_sh[k] = mem_pixels(4 * n, sizeof(float), e);
-        for (size_t i = 0; r->stored_sh[k] && i < 4 * n; i++)
-            r->stored_sh[k][i] = i % 4 < 3 ? half_to_float(float_to_half(f.layers[LAYER_SH_0 + k][i / 4 * 3 + i % 4])) : 0.0f;
+        r->relight_sh[k] = mem_pixels(4 * n, sizeof(float), e);
+        for (size_t i = 0; r->relight_sh[k] && i < 4 * n; i++)
+            r->relight_sh[k][i] = i % 4 < 3 ? half_to_float(float_to_half(f.layers[LAYER_SH_0 + k][i / 4 * 3 + i % 4])) : 0.0f;
     }
     rig_free_result(&f);
     return e->code == ERR_NONE;
@@ -90,7 +90,7 @@ static bool store_sh(rig *r, const bench_scene *b, const bench_row *row, const p
 
 static void forget_sh(rig *r)
 {
-    for (int k = 0; k < SH_IMAGES; k++) free(r->stored_sh[k]), r->stored_sh[k] = NULL;
+    for (int k = 0; k < SH_IMAGES; k++) free(r->relight_sh[k]), r->relight_sh[k] = NULL;
 }
 
 // The rig's environment is the scene's for the time of a run; the scene keeps owning it.

@@ -26,16 +26,16 @@ bool bench_prepare(bench_scene *b, error *e)
 
 static bool build_gbuffer(const char *path, gbuffer *out, log_t *log, error *e)
 {
-    exr_file *f = NULL;
+    exrio_file *f = NULL;
     resolution res;
     resolve_options ro = {0};
-    bool ok = exr_file_open(path, &f, e) && resolve_channels(f, &ro, &res, log, e);
+    bool ok = exrio_file_open(path, &f, e) && resolve_channels(f, &ro, &res, log, e);
     for (int i = 0; ok && i < ROLE_COUNT; i++)
         for (int k = 0; k < res.components[i]; k++)
             f->parts[res.channels[i][k].part].channels[res.channels[i][k].channel].wanted = true;
     gbuffer_options g = {.need = NEED_ALBEDO, .threads = threads_default()};
-    ok = ok && exr_file_load(f, g.threads, e) && gbuffer_build(f, &res, &g, out, log, e);
-    exr_file_close(f);
+    ok = ok && exrio_file_load(f, g.threads, e) && gbuffer_build(f, &res, &g, out, log, e);
+    exrio_file_close(f);
     return ok;
 }
 

@@ -28,7 +28,7 @@ bench_time bench_cell_time(const bench_results *r, int row, int which, bool all)
     const bench_cell *c = &r->cells[row * r->scene_count + which];
     const bench_time *t = all ? c->all : c->direct;
     double cpu[BENCH_ROUNDS], wall[BENCH_ROUNDS];
-    int n = all ? c->all_rounds : c->rounds;
+    int n = all ? c->all_rounds : c->adaptive;
     for (int i = 0; i < n; i++) cpu[i] = t[i].cpu, wall[i] = t[i].wall;
     if (n == 0 || which >= r->timed_count || (all && !c->has_radiance)) return (bench_time){NAN, NAN};
     return (bench_time){bench_median(cpu, n), bench_median(wall, n)};
@@ -39,7 +39,7 @@ double bench_cell_yards(const bench_results *r, int row, int which, bool all)
     const bench_cell *c = &r->cells[row * r->scene_count + which];
     const bench_time *t = all ? c->all : c->direct;
     double ratio[BENCH_ROUNDS];
-    int n = all ? c->all_rounds : c->rounds;
+    int n = all ? c->all_rounds : c->adaptive;
     for (int i = 0; i < n && which < r->timed_count; i++) ratio[i] = t[i].cpu / r->yard[which][c->round[i]].cpu;
     return n == 0 || which >= r->timed_count || (all && !c->has_radiance) ? NAN : bench_median(ratio, n);
 }

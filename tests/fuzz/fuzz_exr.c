@@ -36,20 +36,20 @@ static void check_contract(const gbuffer *g)
 
 static bool read_frame(const char *path, error *e)
 {
-    exr_file *f = NULL;
+    exrio_file *f = NULL;
     resolution r;
     gbuffer g;
     bool ok = false;
     log_t log;
     log_init(&log, LOG_QUIET);
-    if (!exr_file_open(path, &f, e)) goto out;
+    if (!exrio_file_open(path, &f, e)) goto out;
     // The last eye of a stereo file, if it is one.
-    const exr_part *first = &f->parts[0];
+    const exrio_part *first = &f->parts[0];
     resolve_options ro = {.view = first->view_count ? first->views[first->view_count - 1] : NULL};
     bool resolved = resolve_channels(f, &ro, &r, &log, e);
     for (int p = 0; p < f->part_count; p++)
         for (int c = 0; c < f->parts[p].channel_count; c++) f->parts[p].channels[c].wanted = true;
-    if (!resolved || !exr_file_load(f, 1, e)) goto out;
+    if (!resolved || !exrio_file_load(f, 1, e)) goto out;
     gbuffer_options o = {.need = NEED_ALBEDO | NEED_BEAUTY | NEED_MATERIAL | NEED_EMISSION | NEED_DIFFUSE_LIGHT | NEED_COVERAGE,
                          .fov = r.components[ROLE_POSITION] ? 0.0 : 50.0,
                          .threads = 1};
@@ -59,7 +59,7 @@ static bool read_frame(const char *path, error *e)
         gbuffer_free(&g);
     }
 out:
-    exr_file_close(f);
+    exrio_file_close(f);
     log_free(&log);
     return ok;
 }

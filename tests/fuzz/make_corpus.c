@@ -27,21 +27,21 @@ static bool two_parts(const char *folder, error *e)
 {
     char path[4096];
     static float values[5][12 * 8];
-    exr_out_channel beauty[] = {{"R", SAMPLE_FLOAT, values[0]}, {"G", SAMPLE_FLOAT, values[0]}, {"B", SAMPLE_FLOAT, values[0]}};
-    exr_out_channel data[] = {{"Z", SAMPLE_FLOAT, values[1]},
-                              {"N.X", SAMPLE_FLOAT, values[2]},
-                              {"N.Y", SAMPLE_FLOAT, values[3]},
-                              {"N.Z", SAMPLE_FLOAT, values[4]}};
+    exrio_out_channel beauty[] = {{"R", SAMPLE_FLOAT, values[0]}, {"G", SAMPLE_FLOAT, values[0]}, {"B", SAMPLE_FLOAT, values[0]}};
+    exrio_out_channel data[] = {{"Z", SAMPLE_FLOAT, values[1]},
+                                {"N.X", SAMPLE_FLOAT, values[2]},
+                                {"N.Y", SAMPLE_FLOAT, values[3]},
+                                {"N.Z", SAMPLE_FLOAT, values[4]}};
     for (int i = 0; i < 12 * 8; i++) values[1][i] = 2.0f + 0.1f * (float)(i % 12), values[4][i] = 1.0f;
-    exr_out_part parts[2] = {{.name = "beauty", .channels = beauty, .channel_count = 3},
-                             {.name = "depth", .channels = data, .channel_count = 4}};
+    exrio_out_part parts[2] = {{.name = "beauty", .channels = beauty, .channel_count = 3},
+                               {.name = "depth", .channels = data, .channel_count = 4}};
     for (int i = 0; i < 2; i++) {
         parts[i].data_window = parts[i].display_window = (box2){0, 0, 11, 7};
         parts[i].pixel_aspect = 1.0f;
         parts[i].compression = EXR_COMPRESSION_ZIP;
     }
     snprintf(path, sizeof path, "%s/parts.exr", folder);
-    return exr_write(path, parts, 2, 1, e);
+    return exrio_write(path, parts, 2, 1, e);
 }
 
 static bool two_eyes(const char *folder, error *e)
@@ -49,20 +49,20 @@ static bool two_eyes(const char *folder, error *e)
     char path[4096];
     static float depth[12 * 8];
     static const char *const names[] = {"Z.left.V", "Z.right.V", "right.N.X", "N.Y", "R", "right.R"};
-    exr_out_channel channels[6];
-    exr_out_attr views = {.name = "multiView", .kind = EXR_OUT_STRINGS, .strings = {"left", "right"}, .string_count = 2};
-    exr_out_part part = {.data_window = {0, 0, 11, 7},
-                         .display_window = {0, 0, 11, 7},
-                         .pixel_aspect = 1.0f,
-                         .compression = EXR_COMPRESSION_ZIP,
-                         .channels = channels,
-                         .channel_count = 6,
-                         .attributes = &views,
-                         .attribute_count = 1};
+    exrio_out_channel channels[6];
+    exrio_out_attr views = {.name = "multiView", .kind = EXRIO_OUT_STRINGS, .strings = {"left", "right"}, .string_count = 2};
+    exrio_out_part part = {.data_window = {0, 0, 11, 7},
+                           .display_window = {0, 0, 11, 7},
+                           .pixel_aspect = 1.0f,
+                           .compression = EXR_COMPRESSION_ZIP,
+                           .channels = channels,
+                           .channel_count = 6,
+                           .attributes = &views,
+                           .attribute_count = 1};
     for (int i = 0; i < 12 * 8; i++) depth[i] = 2.0f + 0.1f * (float)(i % 12);
-    for (int i = 0; i < 6; i++) channels[i] = (exr_out_channel){names[i], SAMPLE_FLOAT, depth};
+    for (int i = 0; i < 6; i++) channels[i] = (exrio_out_channel){names[i], SAMPLE_FLOAT, depth};
     snprintf(path, sizeof path, "%s/eyes.exr", folder);
-    return exr_write(path, &part, 1, 1, e);
+    return exrio_write(path, &part, 1, 1, e);
 }
 
 int main(int argc, char **argv)

@@ -15,19 +15,19 @@ typedef struct layer {
 
 enum { MOST_LAYERS = 32 };
 
-static double value_at(const exr_channel *c, size_t i)
+static double value_at(const exrio_channel *c, size_t i)
 {
     if (c->type == SAMPLE_HALF) return (double)half_to_float(((const uint16_t *)c->data)[i]);
     return c->type == SAMPLE_FLOAT ? (double)((const float *)c->data)[i] : (double)((const uint32_t *)c->data)[i];
 }
 
-static exr_part *load(const char *path, exr_file **f)
+static exrio_part *load(const char *path, exrio_file **f)
 {
     error e = {0};
-    if (exr_file_open(path, f, &e)) {
-        exr_part *p = &(*f)->parts[0];
+    if (exrio_file_open(path, f, &e)) {
+        exrio_part *p = &(*f)->parts[0];
         for (int i = 0; i < p->channel_count; i++) p->channels[i].wanted = true;
-        if (exr_file_load(*f, 2, &e)) return p;
+        if (exrio_file_load(*f, 2, &e)) return p;
     }
     fprintf(stderr, "compare: %s: %s\n", path, e.message);
     exit(2);
@@ -47,7 +47,7 @@ static layer *layer_of(layer *layers, int *count, const char *channel)
     return l;
 }
 
-static void add(layer *l, const exr_channel *a, const exr_channel *b, size_t pixels)
+static void add(layer *l, const exrio_channel *a, const exrio_channel *b, size_t pixels)
 {
     for (size_t i = 0; i < pixels; i++) {
         double d = fabs(value_at(a, i) - value_at(b, i));
@@ -59,11 +59,11 @@ static void add(layer *l, const exr_channel *a, const exr_channel *b, size_t pix
 
 int main(int argc, char **argv)
 {
-    exr_file *files[2];
+    exrio_file *files[2];
     layer layers[MOST_LAYERS];
     int count = 0, bad = 0;
     if (argc != 4) return 2;
-    const exr_part *a = load(argv[1], &files[0]), *b = load(argv[2], &files[1]);
+    const exrio_part *a = load(argv[1], &files[0]), *b = load(argv[2], &files[1]);
     if (!box2_equal(a->data_window, b->data_window)) {
         puts("the pictures differ in size");
         return 1;
@@ -80,7 +80,7 @@ int main(int argc, char **argv)
         printf("%s rms %.6f max %.4f%s\n", l->name, rms, l->largest, over ? " TOO FAR" : "");
         bad += over;
     }
-    exr_file_close(files[0]);
-    exr_file_close(files[1]);
+    exrio_file_close(files[0]);
+    exrio_file_close(files[1]);
     return count == 0 || bad > 0;
 }

@@ -39,40 +39,40 @@ bool hard_whole(void)
     return s && strcmp(s, "whole") == 0;
 }
 
-exr_file *hard_file(const scene *s, const view *v, const scene_exr_options *o)
+exrio_file *hard_file(const scene *s, const view *v, const scene_exr_options *o)
 {
     error e = {0};
     scene_exr_options with = *o;
     if (!with.convention) with.convention = "plain";
-    exr_file *f = scene_file(s, v, &with, &e);
+    exrio_file *f = scene_file(s, v, &with, &e);
     must(f != NULL, &e);
     return f;
 }
 
-float *hard_channel(const exr_file *f, const char *name)
+float *hard_channel(const exrio_file *f, const char *name)
 {
     for (int i = 0; i < f->parts[0].channel_count; i++)
         if (strcmp(f->parts[0].channels[i].name, name) == 0) return f->parts[0].channels[i].data;
     return NULL;
 }
 
-const char *hard_write(const hard *h, const exr_file *f, const char *name)
+const char *hard_write(const hard *h, const exrio_file *f, const char *name)
 {
     static char path[128];
-    exr_out_channel channels[32];
-    const exr_part *p = &f->parts[0];
+    exrio_out_channel channels[32];
+    const exrio_part *p = &f->parts[0];
     error e = {0};
     assert_true(p->channel_count <= 32);
     for (int i = 0; i < p->channel_count; i++)
-        channels[i] = (exr_out_channel){p->channels[i].name, p->channels[i].type, p->channels[i].data};
-    exr_out_part part = {.data_window = p->data_window,
-                         .display_window = p->display_window,
-                         .pixel_aspect = p->pixel_aspect,
-                         .compression = p->compression,
-                         .channels = channels,
-                         .channel_count = p->channel_count};
+        channels[i] = (exrio_out_channel){p->channels[i].name, p->channels[i].type, p->channels[i].data};
+    exrio_out_part part = {.data_window = p->data_window,
+                           .display_window = p->display_window,
+                           .pixel_aspect = p->pixel_aspect,
+                           .compression = p->compression,
+                           .channels = channels,
+                           .channel_count = p->channel_count};
     snprintf(path, sizeof path, "%s/%s.exr", h->folder, name);
-    must(exr_write(path, &part, 1, 1, &e), &e);
+    must(exrio_write(path, &part, 1, 1, &e), &e);
     return path;
 }
 
@@ -81,7 +81,7 @@ bool hard_frame(hard *h, const char *path, frame_result *out, error *e)
     return frame_read(&h->rig.job, path, out, e) && frame_filter(&h->rig.job, out, e);
 }
 
-void hard_run(hard *h, const exr_file *f, frame_result *out)
+void hard_run(hard *h, const exrio_file *f, frame_result *out)
 {
     error e = {0};
     must(hard_frame(h, hard_write(h, f, "in"), out, &e), &e);

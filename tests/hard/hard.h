@@ -26,16 +26,16 @@ int hard_close(void **state);
 bool hard_whole(void);
 
 // A scene as a file in memory, of 32-bit floats unless asked otherwise; fails the test if it cannot be made.
-exr_file *hard_file(const scene *s, const view *v, const scene_exr_options *o);
+exrio_file *hard_file(const scene *s, const view *v, const scene_exr_options *o);
 // Samples of a channel by its name, NULL if there is none.
-float *hard_channel(const exr_file *f, const char *name);
+float *hard_channel(const exrio_file *f, const char *name);
 // Writes it to the scratch folder; the path is valid until the next call.
-const char *hard_write(const hard *h, const exr_file *f, const char *name);
+const char *hard_write(const hard *h, const exrio_file *f, const char *name);
 
 // Reads and filters a file by h->rig.options. False with the error filled; *out is to be freed with frame_free either way.
 bool hard_frame(hard *h, const char *path, frame_result *out, error *e);
 // hard_write and hard_frame; fails the test with the program's own sentence.
-void hard_run(hard *h, const exr_file *f, frame_result *out);
+void hard_run(hard *h, const exrio_file *f, frame_result *out);
 
 // Fails unless every layer that was made is finite, shares are in 0..1 and light is not negative.
 void hard_check_layers(const frame_result *r, const char *what);

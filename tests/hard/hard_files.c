@@ -36,21 +36,21 @@ static bool sound(const gbuffer *g)
 // 0 an error with a sentence, 1 a sound result, 2 neither.
 static int read_frame(const char *path)
 {
-    exr_file *f = NULL;
+    exrio_file *f = NULL;
     resolution r;
     gbuffer g;
     error e = {0};
     int result = 0;
-    if (exr_file_open(path, &f, &e) && resolve_channels(f, &(resolve_options){0}, &r, NULL, &e)) {
+    if (exrio_file_open(path, &f, &e) && resolve_channels(f, &(resolve_options){0}, &r, NULL, &e)) {
         for (int p = 0; p < f->part_count; p++)
             for (int c = 0; c < f->parts[p].channel_count; c++) f->parts[p].channels[c].wanted = true;
         gbuffer_options o = {.need = NEED_ALBEDO | NEED_COVERAGE, .threads = 1};
-        if (exr_file_load(f, 1, &e) && gbuffer_build(f, &r, &o, &g, NULL, &e)) {
+        if (exrio_file_load(f, 1, &e) && gbuffer_build(f, &r, &o, &g, NULL, &e)) {
             result = sound(&g) ? 1 : 2;
             gbuffer_free(&g);
         }
     }
-    exr_file_close(f);
+    exrio_file_close(f);
     return result == 0 && (e.code == ERR_NONE || !e.message[0]) ? 2 : result;
 }
 
@@ -84,7 +84,7 @@ static size_t file_of(const hard *h, int kind, char **bytes)
     scene_clutter(&s);
     view v = view_perspective(WIDTH, HEIGHT, 50.0, 1.0);
     view_scene(&v, &s);
-    exr_file *file =
+    exrio_file *file =
         hard_file(&s, &v, &(scene_exr_options){.convention = kind % 2 ? "blender" : "plain", .compression = kinds[kind]});
     FILE *f = fopen(hard_write(h, file, "whole"), "rb");
     assert_non_null(f);

@@ -23,7 +23,7 @@ static void set_method(hard *h, const method *m, double radius)
     h->rig.options.samples = m->samples < 64 ? m->samples : 64;
 }
 
-static exr_file *clutter(bool with_depth)
+static exrio_file *clutter(bool with_depth)
 {
     scene s;
     scene_clutter(&s);
@@ -35,7 +35,7 @@ static exr_file *clutter(bool with_depth)
 static const char *const axes[3] = {"P.X", "P.Y", "P.Z"};
 
 // Every surface's P moved by `by` and rounded to float, then with `back` moved to where it was: the same loss near the origin.
-static void move(exr_file *f, vec3 by, bool back)
+static void move(exrio_file *f, vec3 by, bool back)
 {
     const double d[3] = {by.x, by.y, by.z};
     float *p[3];
@@ -50,7 +50,7 @@ static void move(exr_file *f, vec3 by, bool back)
 }
 
 // Positions on a grid of 2^-12 units: moving them by a whole number of units up to 2^11 loses nothing.
-static void put_on_grid(exr_file *f)
+static void put_on_grid(exrio_file *f)
 {
     for (int k = 0; k < 3; k++) {
         float *p = hard_channel(f, axes[k]);
@@ -63,7 +63,7 @@ static void exact_translation(void **state)
     double worst = 0.0;
     for (const method *m = methods; m->name; m++) {
         frame_result a, b;
-        exr_file *f = clutter(false), *g = clutter(false); // Z would be finer than the grid, and win
+        exrio_file *f = clutter(false), *g = clutter(false); // Z would be finer than the grid, and win
         put_on_grid(f);
         put_on_grid(g);
         move(g, v3(1024, -512, 256), false);
@@ -87,7 +87,7 @@ static double moved_by(hard *h, double distance, bool with_depth, bool back, con
 {
     frame_result r;
     error e = {0};
-    exr_file *f = clutter(with_depth);
+    exrio_file *f = clutter(with_depth);
     if (distance > 0.0) move(f, v3(distance, -0.7 * distance, 0.3 * distance), back);
     *refused = !hard_frame(h, hard_write(h, f, "moved"), &r, &e);
     double rms = NAN;
@@ -114,7 +114,7 @@ static void far_from_the_origin(void **state)
     frame_result clean[2];
     set_method(*state, methods, 1.0);
     for (int z = 0; z < 2; z++) {
-        exr_file *f = clutter(z == 0);
+        exrio_file *f = clutter(z == 0);
         hard_run(*state, f, &clean[z]);
         scene_file_free(f);
     }
@@ -139,10 +139,10 @@ static void far_from_the_origin(void **state)
 
 // --- half positions ---
 
-static void to_half(exr_file *f, const char *name)
+static void to_half(exrio_file *f, const char *name)
 {
     for (int i = 0; i < f->parts[0].channel_count; i++) {
-        exr_channel *c = &f->parts[0].channels[i];
+        exrio_channel *c = &f->parts[0].channels[i];
         if (strcmp(c->name, name) != 0) continue;
         for (size_t j = 0; j < PIXELS; j++) { // in place: a half is never ahead of its float
             float v = ((float *)c->data)[j];
@@ -164,7 +164,7 @@ static void half_positions(void **state)
         for (int z = 0; z < 2; z++) {
             frame_result clean, r;
             error e = {0};
-            exr_file *f = clutter(z == 0);
+            exrio_file *f = clutter(z == 0);
             set_method(*state, methods, 1.0);
             hard_run(*state, f, &clean);
             move(f, v3(distances[i], 0, 0), false);
@@ -210,7 +210,7 @@ static void jittered_plane(void **state)
             frame_result r;
             scene_tilted_plane(&s, tilts[i], 10.0);
             view v = view_perspective(WIDTH, HEIGHT, 40.0, 1.0);
-            exr_file *f = hard_file(&s, &v, &(scene_exr_options){0});
+            exrio_file *f = hard_file(&s, &v, &(scene_exr_options){0});
             tracer t = scene_tracer(&s);
             float *p[3], *z = hard_channel(f, "Z");
             for (int k = 0; k < 3; k++) p[k] = hard_channel(f, axes[k]);
@@ -258,11 +258,11 @@ static void turned_world(void **state)
     scene_clutter(&s);
     view v = view_perspective(WIDTH, HEIGHT, 50.0, 1.0);
     view_scene(&v, &s);
-    exr_file *f = hard_file(&s, &v, &(scene_exr_options){0});
+    exrio_file *f = hard_file(&s, &v, &(scene_exr_options){0});
     mat3 turn = m3_mul(rotation_about(v3(1, 0, 0), 33.0), rotation_about(v3(0, 0, 1), 71.0));
     scene_place(&s, 1.0, turn, v3(0, 0, 0));
     view_place(&v, 1.0, turn, v3(0, 0, 0));
-    exr_file *g = hard_file(&s, &v, &(scene_exr_options){0});
+    exrio_file *g = hard_file(&s, &v, &(scene_exr_options){0});
     double worst = 0.0;
     for (const method *m = methods; m->name; m++) {
         frame_result a, b;

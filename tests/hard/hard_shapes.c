@@ -26,7 +26,7 @@ static void set_method(hard *h, const method *m, double radius)
 
 // --- windows ---
 
-static exr_file *window(box2 data, box2 display, double aspect)
+static exrio_file *window(box2 data, box2 display, double aspect)
 {
     scene s;
     scene_clutter(&s);
@@ -48,7 +48,7 @@ static void windows(void **state)
         for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
             for (int a = 0; a < 2 + hard_whole(); a++) {
                 frame_result r;
-                exr_file *f = window(cases[i], display, a == 0 ? 1.0 : a == 1 ? 2.0 : 0.5);
+                exrio_file *f = window(cases[i], display, a == 0 ? 1.0 : a == 1 ? 2.0 : 0.5);
                 set_method(*state, m, 1.0);
                 hard_run(*state, f, &r);
                 hard_check_layers(&r, "a window");
@@ -66,11 +66,11 @@ static void window_origin(void **state)
     static const int shifts[][2] = {{-1000, 777}, {123456, -4}};
     for (const method *m = methods; m->name; m++) {
         frame_result a, b;
-        exr_file *f = window((box2){0, 0, 60, 42}, (box2){0, 0, 60, 42}, 1.0);
+        exrio_file *f = window((box2){0, 0, 60, 42}, (box2){0, 0, 60, 42}, 1.0);
         set_method(*state, m, 1.0);
         hard_run(*state, f, &a);
         for (size_t i = 0; i < 2; i++) {
-            exr_part *p = &f->parts[0];
+            exrio_part *p = &f->parts[0];
             p->data_window = p->display_window = (box2){shifts[i][0], shifts[i][1], shifts[i][0] + 60, shifts[i][1] + 42};
             hard_run(*state, f, &b);
             assert_memory_equal(a.layers[LAYER_OCCLUSION], b.layers[LAYER_OCCLUSION], 61 * 43 * sizeof(float));
@@ -95,12 +95,12 @@ static float islands(int x, int y) { return ((unsigned)x * 2654435761u ^ (unsign
 static float nothing(int x, int y) { return (void)x, (void)y, 0.0f; }
 static float steep(int x, int y) { return (void)y, (float)exp(0.25 * x); }
 
-static exr_file *depth_frame(depth_fn fn)
+static exrio_file *depth_frame(depth_fn fn)
 {
     scene s = {0};
     view v = view_perspective(96, 72, 50.0, 1.0);
     scene_tilted_plane(&s, 0.0, 5.0);
-    exr_file *f = hard_file(&s, &v, &(scene_exr_options){.no_position = true});
+    exrio_file *f = hard_file(&s, &v, &(scene_exr_options){.no_position = true});
     float *z = hard_channel(f, "Z");
     for (int y = 0; y < 72; y++)
         for (int x = 0; x < 96; x++) z[y * 96 + x] = fn(x, y);
@@ -126,7 +126,7 @@ static void depths(void **state)
         for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
             for (int own = 0; own < 2; own++) { // normals of the file, or from depth
                 frame_result r;
-                exr_file *f = depth_frame(cases[i].fn);
+                exrio_file *f = depth_frame(cases[i].fn);
                 for (int k = 0; own && k < 3; k++) {
                     float *n = hard_channel(f, k == 0 ? "N.X" : k == 1 ? "N.Y" : "N.Z");
                     for (int j = 0; j < 96 * 72; j++) n[j] = 0.0f;
@@ -158,7 +158,7 @@ static void radii(void **state)
         for (size_t i = 0; i < sizeof pixels / sizeof *pixels; i++) {
             frame_result r;
             hard *h = *state;
-            exr_file *f = window((box2){0, 0, 63, 47}, (box2){0, 0, 63, 47}, 1.0);
+            exrio_file *f = window((box2){0, 0, 63, 47}, (box2){0, 0, 63, 47}, 1.0);
             set_method(h, m, pixels[i]);
             h->rig.options.radius_unit = RADIUS_PIXELS;
             hard_run(h, f, &r);

@@ -14,7 +14,7 @@ enum { WIDTH = 72, HEIGHT = 54, PIXELS = WIDTH * HEIGHT };
 
 static const char all_layers[] = "occlusion,radiance,indirect,composite,visibility,depthmask";
 
-static exr_file *clutter(void)
+static exrio_file *clutter(void)
 {
     scene s;
     scene_clutter(&s);
@@ -61,7 +61,7 @@ static bool chosen(size_t i, int share) { return i * 2654435761u % 97u < (unsign
 // then its error names an option. Returns whether it ran.
 static bool spoil(hard *h, int channel, float value, int share, frame_result *r)
 {
-    exr_file *f = clutter();
+    exrio_file *f = clutter();
     float *v = hard_channel(f, channels[channel]);
     char what[96];
     error e = {0};
@@ -84,7 +84,7 @@ static void every_value(void **state)
     for (const method *m = methods; m->name; m++) {
         frame_result clean, r;
         set_method(h, m);
-        exr_file *f = clutter();
+        exrio_file *f = clutter();
         hard_run(h, f, &clean);
         scene_file_free(f);
         hard_check_layers(&clean, "clean");
@@ -124,7 +124,7 @@ static void warnings_say_the_share(void **state)
     hard *h = *state;
     frame_result r;
     set_method(h, methods);
-    exr_file *f = clutter();
+    exrio_file *f = clutter();
     forget_warnings(h);
     hard_run(h, f, &r);
     frame_free(&r);
@@ -203,7 +203,7 @@ static void wrong_normals(void **state)
     for (const method *m = methods; m->name; m++) {
         frame_result clean, r;
         set_method(h, m);
-        exr_file *f = clutter();
+        exrio_file *f = clutter();
         hard_run(h, f, &clean);
         scene_file_free(f);
         static unsigned char inside[PIXELS];

@@ -218,27 +218,27 @@ static bool write_sheet(const master *m, const reading_case *c, const sheet *s, 
 {
     static const char *const part_names[4] = {"P", "N", "depth", "rgba"};
     static const int first[5] = {POSITION, 3, DEPTH, ALPHA, CHANNELS};
-    exr_out_channel channels[CHANNELS];
-    exr_out_part parts[4];
+    exrio_out_channel channels[CHANNELS];
+    exrio_out_part parts[4];
     int used = 0, count = 0;
     for (int p = 0; p < 4; p++) {
         int before = used;
         for (int k = first[p]; k < first[p + 1]; k++)
-            if (s->there[k]) channels[used++] = (exr_out_channel){s->names[k], s->type[k], s->data[k]};
+            if (s->there[k]) channels[used++] = (exrio_out_channel){s->names[k], s->type[k], s->data[k]};
         if (used == before) continue;
         if (count > 0 && c->layout != LAYOUT_PARTS) {
             parts[0].channel_count = used;
             continue;
         }
-        parts[count++] = (exr_out_part){.name = c->layout == LAYOUT_PARTS ? part_names[p] : NULL,
-                                        .data_window = m->view.data_window,
-                                        .display_window = m->view.display_window,
-                                        .pixel_aspect = 1.0f,
-                                        .compression = EXR_COMPRESSION_ZIP,
-                                        .channels = channels + before,
-                                        .channel_count = used - before};
+        parts[count++] = (exrio_out_part){.name = c->layout == LAYOUT_PARTS ? part_names[p] : NULL,
+                                          .data_window = m->view.data_window,
+                                          .display_window = m->view.display_window,
+                                          .pixel_aspect = 1.0f,
+                                          .compression = EXR_COMPRESSION_ZIP,
+                                          .channels = channels + before,
+                                          .channel_count = used - before};
     }
-    return exr_write(path, parts, count, 1, e);
+    return exrio_write(path, parts, count, 1, e);
 }
 
 bool reading_write(const master *m, const reading_case *c, const char *path, error *e)

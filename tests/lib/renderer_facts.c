@@ -5,29 +5,29 @@
 
 #include "renderer_file.h"
 
-static exr_out_attr text(const char *name, const char *value)
+static exrio_out_attr text(const char *name, const char *value)
 {
-    return (exr_out_attr){.name = name, .kind = EXR_OUT_STRING, .string = value};
+    return (exrio_out_attr){.name = name, .kind = EXRIO_OUT_STRING, .string = value};
 }
-static exr_out_attr number(const char *name, double value)
+static exrio_out_attr number(const char *name, double value)
 {
-    return (exr_out_attr){.name = name, .kind = EXR_OUT_FLOAT, .number = value};
+    return (exrio_out_attr){.name = name, .kind = EXRIO_OUT_FLOAT, .number = value};
 }
 
 // Row vectors: v * M. The rows of a camera-to-world matrix are the camera's axes and its place.
-static exr_out_attr camera_to_world(const char *name, vec3 x, vec3 y, vec3 z, vec3 eye)
+static exrio_out_attr camera_to_world(const char *name, vec3 x, vec3 y, vec3 z, vec3 eye)
 {
     const vec3 rows[4] = {x, y, z, eye};
-    exr_out_attr a = {.name = name, .kind = EXR_OUT_M44};
+    exrio_out_attr a = {.name = name, .kind = EXRIO_OUT_M44};
     for (int r = 0; r < 4; r++) a.m44[r][0] = rows[r].x, a.m44[r][1] = rows[r].y, a.m44[r][2] = rows[r].z, a.m44[r][3] = r == 3;
     return a;
 }
 
 // Its inverse: the columns are the axes.
-static exr_out_attr world_to_camera(vec3 x, vec3 y, vec3 z, vec3 eye)
+static exrio_out_attr world_to_camera(vec3 x, vec3 y, vec3 z, vec3 eye)
 {
     const vec3 axes[3] = {x, y, z};
-    exr_out_attr a = {.name = "worldToCamera", .kind = EXR_OUT_M44};
+    exrio_out_attr a = {.name = "worldToCamera", .kind = EXRIO_OUT_M44};
     for (int c = 0; c < 3; c++)
         a.m44[0][c] = axes[c].x, a.m44[1][c] = axes[c].y, a.m44[2][c] = axes[c].z, a.m44[3][c] = -v3_dot(axes[c], eye);
     a.m44[3][3] = 1;
@@ -35,10 +35,10 @@ static exr_out_attr world_to_camera(vec3 x, vec3 y, vec3 z, vec3 eye)
 }
 
 // Columns: what x, y and w become.
-static exr_out_attr world_to_ndc(const fact_camera *c, double x, double y, double w)
+static exrio_out_attr world_to_ndc(const fact_camera *c, double x, double y, double w)
 {
-    const exr_out_attr m = world_to_camera(c->right, c->up, c->forward, c->eye);
-    exr_out_attr a = {.name = "worldToNDC", .kind = EXR_OUT_M44};
+    const exrio_out_attr m = world_to_camera(c->right, c->up, c->forward, c->eye);
+    exrio_out_attr a = {.name = "worldToNDC", .kind = EXRIO_OUT_M44};
     for (int r = 0; r < 4; r++) {
         a.m44[r][0] = x * c->cot_x * m.m44[r][0], a.m44[r][1] = y * c->cot_y * m.m44[r][1];
         a.m44[r][2] = a.m44[r][3] = w * m.m44[r][2];
@@ -46,7 +46,7 @@ static exr_out_attr world_to_ndc(const fact_camera *c, double x, double y, doubl
     return a;
 }
 
-static int of_blender(const fact_camera *c, exr_out_attr *a, char (*texts)[32])
+static int of_blender(const fact_camera *c, exrio_out_attr *a, char (*texts)[32])
 {
     (void)c, (void)texts;
     a[0] = text("BlenderMultiChannel", "Blender V2.55.1 and newer"), a[1] = text("Camera", "Camera");
@@ -54,7 +54,7 @@ static int of_blender(const fact_camera *c, exr_out_attr *a, char (*texts)[32])
 }
 
 // Clip space, -1..1 with y up, and a camera that looks along +z.
-static int of_arnold(const fact_camera *c, exr_out_attr *a, char (*texts)[32])
+static int of_arnold(const fact_camera *c, exrio_out_attr *a, char (*texts)[32])
 {
     (void)texts;
     a[0] = world_to_camera(c->right, c->up, c->forward, c->eye), a[1] = world_to_ndc(c, 1, 1, 1);
@@ -63,7 +63,7 @@ static int of_arnold(const fact_camera *c, exr_out_attr *a, char (*texts)[32])
     return 5;
 }
 
-static int of_renderman(const fact_camera *c, exr_out_attr *a, char (*texts)[32])
+static int of_renderman(const fact_camera *c, exrio_out_attr *a, char (*texts)[32])
 {
     (void)texts;
     a[0] = world_to_camera(c->right, c->up, c->forward, c->eye), a[1] = world_to_ndc(c, 0.5, -0.5, 1);
@@ -73,7 +73,7 @@ static int of_renderman(const fact_camera *c, exr_out_attr *a, char (*texts)[32]
 }
 
 // The rotation needs an axis swap: in the Cornell sample -z points straight up.
-static int of_vray(const fact_camera *c, exr_out_attr *a, char (*texts)[32])
+static int of_vray(const fact_camera *c, exrio_out_attr *a, char (*texts)[32])
 {
     (void)texts;
     a[0] = camera_to_world("cameraTransform", c->right, v3_scale(c->forward, -1), v3_scale(c->up, -1), c->eye);
@@ -81,7 +81,7 @@ static int of_vray(const fact_camera *c, exr_out_attr *a, char (*texts)[32])
     return 3;
 }
 
-static int of_redshift(const fact_camera *c, exr_out_attr *a, char (*texts)[32])
+static int of_redshift(const fact_camera *c, exrio_out_attr *a, char (*texts)[32])
 {
     (void)texts;
     a[0] = camera_to_world("rs/camera/transform", c->right, c->up, v3_scale(c->forward, -1), c->eye);
@@ -90,14 +90,14 @@ static int of_redshift(const fact_camera *c, exr_out_attr *a, char (*texts)[32])
 }
 
 // w = -z and a mirrored x.
-static int of_mantra(const fact_camera *c, exr_out_attr *a, char (*texts)[32])
+static int of_mantra(const fact_camera *c, exrio_out_attr *a, char (*texts)[32])
 {
     (void)texts;
     a[0] = world_to_camera(c->right, c->up, c->forward, c->eye), a[1] = world_to_ndc(c, -1, 1, -1);
     return 2;
 }
 
-static int of_karma(const fact_camera *c, exr_out_attr *a, char (*texts)[32])
+static int of_karma(const fact_camera *c, exrio_out_attr *a, char (*texts)[32])
 {
     (void)c, (void)texts;
     a[0] = text("husk:render_stats", "{}");
@@ -105,7 +105,7 @@ static int of_karma(const fact_camera *c, exr_out_attr *a, char (*texts)[32])
 }
 
 // All attributes are texts.
-static int of_unreal(const fact_camera *c, exr_out_attr *a, char (*texts)[32])
+static int of_unreal(const fact_camera *c, exrio_out_attr *a, char (*texts)[32])
 {
     static const char *const names[] = {"unreal/camera/curRot/yaw",    "unreal/camera/curRot/pitch", "unreal/camera/curRot/roll",
                                         "unreal/camera/curPos/x",      "unreal/camera/curPos/y",     "unreal/camera/curPos/z",
@@ -125,7 +125,7 @@ static int of_unreal(const fact_camera *c, exr_out_attr *a, char (*texts)[32])
     return 7;
 }
 
-static int of_luxcore(const fact_camera *c, exr_out_attr *a, char (*texts)[32])
+static int of_luxcore(const fact_camera *c, exrio_out_attr *a, char (*texts)[32])
 {
     (void)c, (void)texts;
     (void)a;

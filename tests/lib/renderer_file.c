@@ -139,16 +139,17 @@ fact_camera renderer_camera(const renderer_fact *f, const view *v)
 }
 
 // The layers with numbers first .. last as one part.
-static exr_out_part part_of(sheet *sh, const view *v, int first, int last, exr_out_channel *channels)
+static exrio_out_part part_of(sheet *sh, const view *v, int first, int last, exrio_out_channel *channels)
 {
-    exr_out_part part = {.data_window = sh->window,
-                         .display_window = v->display_window,
-                         .pixel_aspect = 1,
-                         .compression = EXR_COMPRESSION_ZIP,
-                         .channels = channels};
+    exrio_out_part part = {.data_window = sh->window,
+                           .display_window = v->display_window,
+                           .pixel_aspect = 1,
+                           .compression = EXR_COMPRESSION_ZIP,
+                           .channels = channels};
     for (int g = first; g <= last; g++)
         for (int c = 0; c < sh->layers[g].components; c++)
-            channels[part.channel_count++] = (exr_out_channel){sh->layers[g].names[c], sh->layers[g].type, sh->layers[g].data[c]};
+            channels[part.channel_count++] =
+                (exrio_out_channel){sh->layers[g].names[c], sh->layers[g].type, sh->layers[g].data[c]};
     return part;
 }
 
@@ -165,9 +166,9 @@ bool renderer_write(const renderer_fact *f, const scene *s, const view *v, const
                     int *count, error *e)
 {
     static const char *const fallback[GROUPS] = {"position", "normal", "depth", "albedo", "rgba"};
-    exr_out_channel channels[GROUPS][MOST_CHANNELS + 1];
-    exr_out_part parts[GROUPS];
-    exr_out_attr attributes[FACT_ATTRIBUTES];
+    exrio_out_channel channels[GROUPS][MOST_CHANNELS + 1];
+    exrio_out_part parts[GROUPS];
+    exrio_out_attr attributes[FACT_ATTRIBUTES];
     char texts[FACT_ATTRIBUTES][32];
     fact_camera c = renderer_camera(f, v);
     sheet sh = {0};
@@ -179,19 +180,19 @@ bool renderer_write(const renderer_fact *f, const scene *s, const view *v, const
         parts[n] = part_of(&sh, v, g, g, channels[g]);
         parts[n++].name = sh.layers[g].layer[0] ? sh.layers[g].layer : fallback[g];
     }
-    if (ok && f->layout == ONE_PART) parts[n++] = part_of(&sh, v, 0, GROUPS - 1, (exr_out_channel *)channels);
+    if (ok && f->layout == ONE_PART) parts[n++] = part_of(&sh, v, 0, GROUPS - 1, (exrio_out_channel *)channels);
     for (int i = 0; i < n; i++) parts[i].attributes = attributes, parts[i].attribute_count = attribute_count;
     if (f->layout == FILE_PER_LAYER) {
         for (int i = 0; ok && i < n; i++) {
             snprintf(paths[i], 256, "%s/shot_%s.0001.exr", folder, parts[i].name);
             parts[i].name = NULL;
-            ok = exr_write(paths[i], &parts[i], 1, 1, e);
+            ok = exrio_write(paths[i], &parts[i], 1, 1, e);
             *count = i + 1;
         }
     } else if (ok) {
         snprintf(paths[0], 256, "%s/%s.exr", folder, f->expected);
         *count = 1;
-        ok = exr_write(paths[0], parts, n, 1, e) && (!f->tiled || write_tiled(paths[0], e));
+        ok = exrio_write(paths[0], parts, n, 1, e) && (!f->tiled || write_tiled(paths[0], e));
     }
     for (int g = 0; g < GROUPS; g++)
         for (int k = 0; k < 4; k++) free(sh.layers[g].data[k]);

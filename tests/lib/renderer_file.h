@@ -31,7 +31,7 @@ typedef struct renderer_fact {
     bool radial, unorm_normals, half_normals, half_colours, tiled, cropped;
     double background_depth, background_position;
     file_layout layout;
-    int (*attributes)(const fact_camera *, exr_out_attr *, char (*texts)[32]); // returns their number
+    int (*attributes)(const fact_camera *, exrio_out_attr *, char (*texts)[32]); // returns their number
 } renderer_fact;
 
 extern const renderer_fact renderer_facts[];

@@ -40,7 +40,7 @@ bool rig_run(rig *r, const gbuffer *gb, const method *m, const pass_settings *se
     bool bounce = layers & 1u << LAYER_INDIRECT;
     bool light = r->job.env_loaded && (bounce || layers & 1u << LAYER_RADIANCE);
     *out = (frame_result){.gb = *gb, .set = *set, .proxies = r->proxies};
-    for (int k = 0; k < SH_IMAGES; k++) out->stored_sh[k] = r->stored_sh[k];
+    for (int k = 0; k < SH_IMAGES; k++) out->relight_sh[k] = r->relight_sh[k];
     out->set.world_from_camera = gb->camera.has_world ? gb->camera.world_from_camera : m3_identity();
     out->plan = (plan){.method = m,
                        .layers = layers,
@@ -50,7 +50,7 @@ bool rig_run(rig *r, const gbuffer *gb, const method *m, const pass_settings *se
                        .want_visibility = layers & 1u << LAYER_VISIBILITY,
                        .irradiance = light && !m->fills_radiance,
                        .blur = set->blur > 0 && !m->fills_sh,
-                       .look = set->contrast != 1.0 || set->scale != 1.0 || !m->fills_radiance,
+                       .tone = set->contrast != 1.0 || set->scale != 1.0 || !m->fills_radiance,
                        .depthmask = layers & 1u << LAYER_DEPTHMASK,
                        .bounce_name = r->options.bounce,
                        .bounce = bounce};

@@ -8,8 +8,8 @@ typedef struct rig {
     job job;
     options options;
     log_t log;
-    proxy_set proxies;           // borrowed; none by default
-    float *stored_sh[SH_IMAGES]; // of --from-sh, 4 a pixel; borrowed; none by default
+    proxy_set proxies;            // borrowed; none by default
+    float *relight_sh[SH_IMAGES]; // of --from-sh, 4 a pixel; borrowed; none by default
 } rig;
 
 // The context and the environment. `env` may be NULL: no light; env->path NULL: the white environment.

@@ -67,21 +67,21 @@ int samples_list(const char *dir, sample *list, int max, error *e)
     return n;
 }
 
-static float value_at(const exr_channel *c, size_t i)
+static float value_at(const exrio_channel *c, size_t i)
 {
     if (c->type == SAMPLE_HALF) return half_to_float(((const uint16_t *)c->data)[i]);
     return ((const float *)c->data)[i];
 }
 
 // Components `letters` of layer `name`, interleaved; NULL (no error) if the file has none.
-static float *take(const exr_file *f, const char *name, const char *letters, error *e)
+static float *take(const exrio_file *f, const char *name, const char *letters, error *e)
 {
-    const exr_part *p = &f->parts[0];
+    const exrio_part *p = &f->parts[0];
     size_t n = (size_t)box2_width(p->data_window) * (size_t)box2_height(p->data_window), channels = strlen(letters);
     float *out = mem_pixels(n * channels, sizeof *out, e);
     for (size_t k = 0; out && k < channels; k++) {
         char wanted[128];
-        const exr_channel *found = NULL;
+        const exrio_channel *found = NULL;
         snprintf(wanted, sizeof wanted, "%s.%c", name, letters[k]);
         for (int c = 0; c < p->channel_count; c++)
             if (strcmp(p->channels[c].name, wanted) == 0) found = &p->channels[c];
@@ -95,21 +95,21 @@ static float *take(const exr_file *f, const char *name, const char *letters, err
     return out;
 }
 
-static exr_file *open_all(const char *path, error *e)
+static exrio_file *open_all(const char *path, error *e)
 {
-    exr_file *f = NULL;
-    if (!exr_file_open(path, &f, e)) return NULL;
+    exrio_file *f = NULL;
+    if (!exrio_file_open(path, &f, e)) return NULL;
     for (int c = 0; c < f->parts[0].channel_count; c++) f->parts[0].channels[c].wanted = true;
-    if (exr_file_load(f, 2, e)) return f;
-    exr_file_close(f);
+    if (exrio_file_load(f, 2, e)) return f;
+    exrio_file_close(f);
     return NULL;
 }
 
 float *sample_read(const char *path, const char *layer, const char *letters, error *e)
 {
-    exr_file *f = open_all(path, e);
+    exrio_file *f = open_all(path, e);
     float *v = f ? take(f, layer, letters, e) : NULL;
-    exr_file_close(f);
+    exrio_file_close(f);
     return v;
 }
 
@@ -143,7 +143,7 @@ static bool find_scored(sample *s, error *e)
 
 bool sample_load(sample *s, error *e)
 {
-    exr_file *main = open_all(s->file, e), *truth = main ? open_all(s->truth, e) : NULL;
+    exrio_file *main = open_all(s->file, e), *truth = main ? open_all(s->truth, e) : NULL;
     bool ok = false;
     if (!main || !truth) goto out;
     s->width = box2_width(main->parts[0].data_window);
@@ -161,8 +161,8 @@ bool sample_load(sample *s, error *e)
     s->indirect[1] = take(truth, "DiffInd", "RGB", e);
     ok = e->code == ERR_NONE && find_scored(s, e);
 out:
-    exr_file_close(main);
-    exr_file_close(truth);
+    exrio_file_close(main);
+    exrio_file_close(truth);
     if (!ok) sample_free(s);
     return ok;
 }

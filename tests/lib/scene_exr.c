@@ -88,7 +88,7 @@ static const char *channel_name(const convention *c, const scene_exr_options *o,
     return o->no_depth ? NULL : c->depth;
 }
 
-static bool make_channels(exr_part *part, const convention *c, const scene_exr_options *o, size_t pixels, int index[VALUES],
+static bool make_channels(exrio_part *part, const convention *c, const scene_exr_options *o, size_t pixels, int index[VALUES],
                           error *e)
 {
     part->channels = mem_zero(VALUES, sizeof *part->channels, e);
@@ -97,7 +97,7 @@ static bool make_channels(exr_part *part, const convention *c, const scene_exr_o
         const char *name = channel_name(c, o, i);
         index[i] = -1;
         if (!name) continue;
-        exr_channel *channel = &part->channels[part->channel_count];
+        exrio_channel *channel = &part->channels[part->channel_count];
         index[i] = part->channel_count++;
         channel->type = i < NORMAL && o->half_position ? SAMPLE_HALF : SAMPLE_FLOAT;
         channel->wanted = true;
@@ -108,7 +108,7 @@ static bool make_channels(exr_part *part, const convention *c, const scene_exr_o
     return true;
 }
 
-static void store(exr_channel *channel, size_t pixel, double value)
+static void store(exrio_channel *channel, size_t pixel, double value)
 {
     if (channel->type == SAMPLE_HALF)
         ((uint16_t *)channel->data)[pixel] = float_to_half((float)value);
@@ -116,7 +116,7 @@ static void store(exr_channel *channel, size_t pixel, double value)
         ((float *)channel->data)[pixel] = (float)value;
 }
 
-static void fill(const scene *s, const view *v, const scene_exr_options *o, double background, exr_part *part,
+static void fill(const scene *s, const view *v, const scene_exr_options *o, double background, exrio_part *part,
                  const int index[VALUES])
 {
     for (int y = 0; y < v->height; y++) {
@@ -131,11 +131,11 @@ static void fill(const scene *s, const view *v, const scene_exr_options *o, doub
     }
 }
 
-void scene_file_free(exr_file *f)
+void scene_file_free(exrio_file *f)
 {
     if (!f) return;
     for (int i = 0; i < f->part_count; i++) {
-        exr_part *part = &f->parts[i];
+        exrio_part *part = &f->parts[i];
         for (int c = 0; part->channels && c < part->channel_count; c++) {
             free(part->channels[c].name);
             free(part->channels[c].data);
@@ -149,9 +149,9 @@ void scene_file_free(exr_file *f)
     free(f);
 }
 
-static exr_file *new_file(const view *v, int compression, error *e)
+static exrio_file *new_file(const view *v, int compression, error *e)
 {
-    exr_file *f = mem_zero(1, sizeof *f, e);
+    exrio_file *f = mem_zero(1, sizeof *f, e);
     if (!f) return NULL;
     f->path = mem_string("scene.exr", e);
     f->parts = mem_zero(1, sizeof *f->parts, e);
@@ -170,14 +170,14 @@ out:
     return NULL;
 }
 
-exr_file *scene_file(const scene *s, const view *v, const scene_exr_options *options, error *e)
+exrio_file *scene_file(const scene *s, const view *v, const scene_exr_options *options, error *e)
 {
     const convention *c = find_convention(options->convention);
     if (!c) {
         err_set(e, ERR_USAGE, NULL, NULL, "unknown naming convention '%s'; use blender or plain", options->convention);
         return NULL;
     }
-    exr_file *f = new_file(v, options->compression, e);
+    exrio_file *f = new_file(v, options->compression, e);
     if (!f) return NULL;
     int index[VALUES];
     if (!make_channels(&f->parts[0], c, options, (size_t)v->width * (size_t)v->height, index, e)) {
@@ -191,23 +191,23 @@ exr_file *scene_file(const scene *s, const view *v, const scene_exr_options *opt
 
 bool scene_write(const scene *s, const view *v, const scene_exr_options *options, const char *path, error *e)
 {
-    exr_file *f = scene_file(s, v, options, e);
+    exrio_file *f = scene_file(s, v, options, e);
     if (!f) return false;
-    exr_out_channel channels[VALUES];
-    exr_part *from = &f->parts[0];
+    exrio_out_channel channels[VALUES];
+    exrio_part *from = &f->parts[0];
     for (int i = 0; i < from->channel_count; i++)
-        channels[i] = (exr_out_channel){from->channels[i].name, from->channels[i].type, from->channels[i].data};
-    exr_out_attr marker = {.name = "BlenderMultiChannel", .kind = EXR_OUT_STRING, .string = "Blender V2.55.1 and newer"};
+        channels[i] = (exrio_out_channel){from->channels[i].name, from->channels[i].type, from->channels[i].data};
+    exrio_out_attr marker = {.name = "BlenderMultiChannel", .kind = EXRIO_OUT_STRING, .string = "Blender V2.55.1 and newer"};
     bool blender = !options->convention || !strcmp(options->convention, "blender");
-    exr_out_part part = {.data_window = from->data_window,
-                         .display_window = from->display_window,
-                         .pixel_aspect = from->pixel_aspect,
-                         .compression = options->compression,
-                         .channels = channels,
-                         .channel_count = from->channel_count,
-                         .attributes = &marker,
-                         .attribute_count = blender ? 1 : 0};
-    bool done = exr_write(path, &part, 1, 1, e);
+    exrio_out_part part = {.data_window = from->data_window,
+                           .display_window = from->display_window,
+                           .pixel_aspect = from->pixel_aspect,
+                           .compression = options->compression,
+                           .channels = channels,
+                           .channel_count = from->channel_count,
+                           .attributes = &marker,
+                           .attribute_count = blender ? 1 : 0};
+    bool done = exrio_write(path, &part, 1, 1, e);
     scene_file_free(f);
     return done;
 }

@@ -66,9 +66,9 @@ typedef struct scene_exr_options {
 } scene_exr_options;
 
 // An EXR file in memory: one part, all channels loaded, no attributes. Beauty is albedo under a fixed hemisphere light, A the
-// coverage. Free with scene_file_free, never with exr_file_close: there is no file behind it.
-exr_file *scene_file(const scene *s, const view *v, const scene_exr_options *options, error *e);
-void scene_file_free(exr_file *f);
+// coverage. Free with scene_file_free, never with exrio_file_close: there is no file behind it.
+exrio_file *scene_file(const scene *s, const view *v, const scene_exr_options *options, error *e);
+void scene_file_free(exrio_file *f);
 // The same written to disk through exr/write.h; the Blender convention carries Blender's marker attribute.
 bool scene_write(const scene *s, const view *v, const scene_exr_options *options, const char *path, error *e);
 

@@ -10,23 +10,23 @@
 
 enum { MOST = 40 };
 static char text[4096];
-static exr_channel channels[MOST];
-static exr_part parts[8];
-static exr_file file;
+static exrio_channel channels[MOST];
+static exrio_part parts[8];
+static exrio_file file;
 
 // "part: a.R b.R; part: c.R", channels parted by commas, parts by semicolons, "part@view" for a view.
-static inline const exr_file *with(const char *description)
+static inline const exrio_file *with(const char *description)
 {
     snprintf(text, sizeof text, "%s", description);
     memset(channels, 0, sizeof channels);
     memset(parts, 0, sizeof parts);
-    file = (exr_file){.parts = parts};
+    file = (exrio_file){.parts = parts};
     static char path[] = "in.exr", empty[] = "";
     file.path = path;
     int c = 0;
     char *rest = text, *part;
     while ((part = strsep(&rest, ";"))) {
-        exr_part *p = &parts[file.part_count++];
+        exrio_part *p = &parts[file.part_count++];
         p->name = p->view = empty;
         p->channels = &channels[c];
         char *colon = strchr(part, ':');
@@ -39,7 +39,7 @@ static inline const exr_file *with(const char *description)
         char *name;
         while ((name = strsep(&part, ","))) {
             assert_true(c < MOST);
-            channels[c++] = (exr_channel){.name = name, .type = SAMPLE_FLOAT};
+            channels[c++] = (exrio_channel){.name = name, .type = SAMPLE_FLOAT};
             p->channel_count++;
         }
     }

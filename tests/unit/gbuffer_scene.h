@@ -1,4 +1,4 @@
-// A sphere over a ground plane, rendered ray by ray into an exr_file in memory: what the gbuffer tests build frames from.
+// A sphere over a ground plane, rendered ray by ray into an exrio_file in memory: what the gbuffer tests build frames from.
 #ifndef SSDO_TESTS_GBUFFER_SCENE_H
 #define SSDO_TESTS_GBUFFER_SCENE_H
 
@@ -36,9 +36,9 @@ typedef struct scene {
 static float pixels[CHANNELS][N];
 static double true_depth[N]; // at the pixel centre; 0 background
 static vec3 true_normal[N];  // camera space
-static exr_channel channels[CHANNELS];
-static exr_part part;
-static exr_file file;
+static exrio_channel channels[CHANNELS];
+static exrio_part part;
+static exrio_file file;
 
 static inline mat3 looking_down(void)
 {
@@ -117,12 +117,12 @@ static inline void render(const scene *s)
             pixels[A][i] = 1.0f;
             pixels[ROUGH][i] = 0.3f;
         }
-    for (int c = 0; c < CHANNELS; c++) channels[c] = (exr_channel){.name = names[c], .type = SAMPLE_FLOAT, .data = pixels[c]};
+    for (int c = 0; c < CHANNELS; c++) channels[c] = (exrio_channel){.name = names[c], .type = SAMPLE_FLOAT, .data = pixels[c]};
     static char empty[] = "", path[] = "in.exr";
     box2 window = {0, 0, W - 1, H - 1};
-    part = (exr_part){.name = empty, .view = empty, .data_window = window, .display_window = window, .pixel_aspect = 1};
+    part = (exrio_part){.name = empty, .view = empty, .data_window = window, .display_window = window, .pixel_aspect = 1};
     part.channels = channels, part.channel_count = CHANNELS;
-    file = (exr_file){.path = path, .parts = &part, .part_count = 1};
+    file = (exrio_file){.path = path, .parts = &part, .part_count = 1};
 }
 
 static inline bool try_build(const resolve_options *ro, gbuffer_options o, gbuffer *g, error *e)

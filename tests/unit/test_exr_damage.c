@@ -3,7 +3,7 @@
 
 #include <openexr.h>
 
-#include "exr_raw.h"
+#include "exrio_raw.h"
 
 static const int kinds[] = {EXR_COMPRESSION_NONE, EXR_COMPRESSION_RLE,   EXR_COMPRESSION_ZIPS, EXR_COMPRESSION_ZIP,
                             EXR_COMPRESSION_PIZ,  EXR_COMPRESSION_PXR24, EXR_COMPRESSION_B44,  EXR_COMPRESSION_B44A};
@@ -12,18 +12,18 @@ enum { KINDS = sizeof kinds / sizeof *kinds };
 // Opens and loads everything. True if both succeed; otherwise *e says why.
 static bool read_all(const char *path, error *e)
 {
-    exr_file *f = NULL;
+    exrio_file *f = NULL;
     *e = (error){0};
-    if (!exr_file_open(path, &f, e)) {
+    if (!exrio_file_open(path, &f, e)) {
         assert_null(f);
         return false;
     }
     for (int p = 0; p < f->part_count; p++)
         for (int c = 0; c < f->parts[p].channel_count; c++) f->parts[p].channels[c].wanted = true;
-    bool ok = exr_file_load(f, 2, e);
+    bool ok = exrio_file_load(f, 2, e);
     for (int p = 0; p < f->part_count; p++)
         for (int c = 0; c < f->parts[p].channel_count; c++) assert_true(ok == (f->parts[p].channels[c].data != NULL));
-    exr_file_close(f);
+    exrio_file_close(f);
     return ok;
 }
 
@@ -32,7 +32,7 @@ static uint8_t *small_file(int kind, size_t *size)
     image im;
     error e = {0};
     make_image(&im, 7, 5, kind, kind == EXR_COMPRESSION_NONE);
-    assert_ok(exr_write(in_scratch("small.exr"), &im.part, 1, 1, &e), e);
+    assert_ok(exrio_write(in_scratch("small.exr"), &im.part, 1, 1, &e), e);
     free_image(&im);
     return slurp(in_scratch("small.exr"), size);
 }
@@ -117,7 +117,7 @@ static void test_damaged_chunks(void **state)
         error e = {0};
         size_t size;
         make_image(&im, 60, 64, kinds[k], false);
-        assert_ok(exr_write(in_scratch("c.exr"), &im.part, 1, 1, &e), e);
+        assert_ok(exrio_write(in_scratch("c.exr"), &im.part, 1, 1, &e), e);
         uint8_t *good = slurp(in_scratch("c.exr"), &size), *bad = test_malloc(size);
         mute();
         for (int round = 0; round < 60; round++) {
@@ -163,9 +163,9 @@ static void test_a_plain_header_is_read(void **state)
     raw_finish(&raw);
     raw_save(&raw, in_scratch("raw.exr"));
     assert_true(read_all(in_scratch("raw.exr"), &e));
-    exr_file *f = open_all(in_scratch("raw.exr"), 1);
+    exrio_file *f = open_all(in_scratch("raw.exr"), 1);
     assert_int_equal(*(uint16_t *)f->parts[0].channels[0].data, 0x3c00);
-    exr_file_close(f);
+    exrio_file_close(f);
 }
 
 static void test_not_an_exr(void **state)

@@ -5,7 +5,7 @@
 #include <sys/stat.h>
 
 #include "exr/codec.h"
-#include "exr_support.h"
+#include "exrio_support.h"
 
 static int use_built_module(void **state)
 {
@@ -21,7 +21,7 @@ static void write_picture(const char *path, int width, int height)
     image im;
     error e = {0};
     make_image(&im, width, height, EXR_COMPRESSION_ZIP, false);
-    assert_ok(exr_write(path, &im.part, 1, 1, &e), e);
+    assert_ok(exrio_write(path, &im.part, 1, 1, &e), e);
     free_image(&im);
 }
 
@@ -37,14 +37,14 @@ static void test_dwa_that_shrinks(void **state)
                                  scratch_folder),
                      0);
     error e = {0};
-    exr_file *f = NULL;
-    assert_ok(exr_file_open(in_scratch("a.exr"), &f, &e), e);
+    exrio_file *f = NULL;
+    assert_ok(exrio_file_open(in_scratch("a.exr"), &f, &e), e);
     assert_int_equal(rename(in_scratch("b.exr"), in_scratch("a.exr")), 0);
     for (int c = 0; c < f->parts[0].channel_count; c++) f->parts[0].channels[c].wanted = true;
-    assert_false(exr_file_load(f, 1, &e));
+    assert_false(exrio_file_load(f, 1, &e));
     assert_int_equal(e.code, ERR_INPUT);
     assert_non_null(strstr(e.message, "16 x 8 pixels while it was read"));
-    exr_file_close(f);
+    exrio_file_close(f);
 }
 
 // What was looked at is what is read, whatever the name stands for meanwhile.
@@ -54,26 +54,26 @@ static void test_zip_that_is_replaced(void **state)
     write_picture(in_scratch("a.exr"), 64, 48);
     write_picture(in_scratch("b.exr"), 16, 8);
     error e = {0};
-    exr_file *f = NULL;
-    assert_ok(exr_file_open(in_scratch("a.exr"), &f, &e), e);
+    exrio_file *f = NULL;
+    assert_ok(exrio_file_open(in_scratch("a.exr"), &f, &e), e);
     assert_int_equal(rename(in_scratch("b.exr"), in_scratch("a.exr")), 0);
     for (int c = 0; c < f->parts[0].channel_count; c++) f->parts[0].channels[c].wanted = true;
-    assert_ok(exr_file_load(f, 2, &e), e);
+    assert_ok(exrio_file_load(f, 2, &e), e);
     assert_int_equal(box2_width(f->parts[0].data_window), 64);
-    exr_file_close(f);
+    exrio_file_close(f);
 }
 
 static void test_no_regular_file(void **state)
 {
     (void)state;
     error e = {0};
-    exr_file *f = NULL;
+    exrio_file *f = NULL;
     assert_int_equal(mkfifo(in_scratch("pipe.exr"), 0600), 0);
-    assert_false(exr_file_open(in_scratch("pipe.exr"), &f, &e)); // and does not wait for a writer
+    assert_false(exrio_file_open(in_scratch("pipe.exr"), &f, &e)); // and does not wait for a writer
     assert_int_equal(e.code, ERR_INPUT);
     assert_non_null(strstr(e.message, "a pipe"));
     e = (error){0};
-    assert_false(exr_file_open("/dev/zero", &f, &e));
+    assert_false(exrio_file_open("/dev/zero", &f, &e));
     assert_non_null(strstr(e.message, "a device"));
 }
 
@@ -87,10 +87,10 @@ static void test_piz_of_noise(void **state)
         error e = {0};
         make_image(&im, sizes[i][0], sizes[i][1], EXR_COMPRESSION_PIZ, true);
         for (int threads = 1; threads < 4; threads += 2) {
-            assert_ok(exr_write(in_scratch("piz.exr"), &im.part, 1, threads, &e), e);
-            exr_file *f = open_all(in_scratch("piz.exr"), 1);
+            assert_ok(exrio_write(in_scratch("piz.exr"), &im.part, 1, threads, &e), e);
+            exrio_file *f = open_all(in_scratch("piz.exr"), 1);
             assert_same_pixels(&im, &f->parts[0]);
-            exr_file_close(f);
+            exrio_file_close(f);
         }
         free_image(&im);
     }

@@ -1,7 +1,7 @@
 // The OpenImageIO module: PNG out, other image formats in, and a clear remedy when it is missing.
 #include <libgen.h>
 
-#include "exr_support.h"
+#include "exrio_support.h"
 #include "plugin/images.h"
 
 static int use_built_module(void **state)
@@ -85,7 +85,7 @@ static void test_missing_part_or_channel(void **state)
     image im;
     error e = {0};
     make_image(&im, 9, 4, 3, true);
-    assert_ok(exr_write(in_scratch("i.exr"), &im.part, 1, 1, &e), e);
+    assert_ok(exrio_write(in_scratch("i.exr"), &im.part, 1, 1, &e), e);
     const char *const names[] = {"normal.X", NULL, "id"};
     const int types[] = {SAMPLE_FLOAT, SAMPLE_HALF, SAMPLE_UINT};
     void *data[3];

@@ -4,7 +4,7 @@
 
 #include <openexr.h>
 
-#include "exr_support.h"
+#include "exrio_support.h"
 
 enum { SUCCEEDED = 0, FAILED_WELL = 10, FAILED_BADLY = 11 };
 
@@ -13,26 +13,26 @@ static int try_once(const char *path)
 {
     static const uint16_t half[40 * 20];
     static const float depth[40 * 20];
-    exr_out_channel channels[] = {{"b.R", SAMPLE_HALF, half}, {"Z", SAMPLE_FLOAT, depth}};
-    exr_out_attr ours[] = {{.name = "ssdo/version", .kind = EXR_OUT_STRING, .string = "1"}};
-    exr_out_part part = {.data_window = {0, 0, 39, 19},
-                         .display_window = {0, 0, 39, 19},
-                         .pixel_aspect = 1,
-                         .compression = EXR_COMPRESSION_ZIP,
-                         .channels = channels,
-                         .channel_count = 2,
-                         .attributes = ours,
-                         .attribute_count = 1};
+    exrio_out_channel channels[] = {{"b.R", SAMPLE_HALF, half}, {"Z", SAMPLE_FLOAT, depth}};
+    exrio_out_attr ours[] = {{.name = "ssdo/version", .kind = EXRIO_OUT_STRING, .string = "1"}};
+    exrio_out_part part = {.data_window = {0, 0, 39, 19},
+                           .display_window = {0, 0, 39, 19},
+                           .pixel_aspect = 1,
+                           .compression = EXR_COMPRESSION_ZIP,
+                           .channels = channels,
+                           .channel_count = 2,
+                           .attributes = ours,
+                           .attribute_count = 1};
     error e = {0};
-    exr_file *f = NULL;
-    bool ok = exr_write(path, &part, 1, 2, &e);
+    exrio_file *f = NULL;
+    bool ok = exrio_write(path, &part, 1, 2, &e);
     if (!ok && access(path, F_OK) == 0) return FAILED_BADLY;
-    if (ok) ok = exr_file_open(path, &f, &e);
+    if (ok) ok = exrio_file_open(path, &f, &e);
     if (ok) {
         f->parts[0].channels[1].wanted = true;
-        ok = exr_file_load(f, 2, &e);
+        ok = exrio_file_load(f, 2, &e);
         if (!ok && f->parts[0].channels[1].data) return FAILED_BADLY;
-        exr_file_close(f);
+        exrio_file_close(f);
     }
     if (ok) return SUCCEEDED;
     return e.message[0] && (e.code == ERR_MEMORY || e.code == ERR_INPUT || e.code == ERR_OUTPUT) ? FAILED_WELL : FAILED_BADLY;

@@ -1,5 +1,5 @@
 // Which names the channels of several files get, and that each part keeps the attributes of its own file.
-#include "exr_support.h"
+#include "exrio_support.h"
 
 static const float pixels[4] = {1, 2, 3, 4};
 
@@ -7,44 +7,44 @@ static const char *write_file(const char *name, const char *channels)
 {
     static char names[8][16];
     const char *path = in_scratch(name);
-    exr_out_channel list[8];
-    exr_out_attr who = {.name = "who", .kind = EXR_OUT_STRING, .string = name};
-    exr_out_part part = {.data_window = {0, 0, 1, 1}, .display_window = {0, 0, 1, 1}, .pixel_aspect = 1, .attributes = &who};
+    exrio_out_channel list[8];
+    exrio_out_attr who = {.name = "who", .kind = EXRIO_OUT_STRING, .string = name};
+    exrio_out_part part = {.data_window = {0, 0, 1, 1}, .display_window = {0, 0, 1, 1}, .pixel_aspect = 1, .attributes = &who};
     part.attribute_count = 1, part.channels = list, part.compression = 3;
     error e = {0};
     for (const char *p = channels; *p;) {
         size_t n = strcspn(p, ",");
         snprintf(names[part.channel_count], sizeof names[0], "%.*s", (int)n, p);
-        list[part.channel_count] = (exr_out_channel){names[part.channel_count], SAMPLE_FLOAT, pixels};
+        list[part.channel_count] = (exrio_out_channel){names[part.channel_count], SAMPLE_FLOAT, pixels};
         part.channel_count++;
         p += n + (p[n] == ',');
     }
-    assert_ok(exr_write(path, &part, 1, 1, &e), e);
+    assert_ok(exrio_write(path, &part, 1, 1, &e), e);
     return path;
 }
 
 // The channels of all parts, one space between.
 static void expect(const char *const *paths, int count, const char *wanted)
 {
-    exr_file *f;
+    exrio_file *f;
     error e = {0};
     char got[512] = "";
-    assert_ok(exr_file_open_all(paths, count, &f, &e), e);
+    assert_ok(exrio_file_open_all(paths, count, &f, &e), e);
     for (int p = 0; p < f->part_count; p++)
         for (int c = 0; c < f->parts[p].channel_count; c++) {
             f->parts[p].channels[c].wanted = true;
             snprintf(got + strlen(got), sizeof got - strlen(got), "%s ", f->parts[p].channels[c].name);
         }
     assert_string_equal(got, wanted);
-    assert_ok(exr_file_load(f, 2, &e), e);
+    assert_ok(exrio_file_load(f, 2, &e), e);
     for (int p = 0; p < f->part_count; p++) {
         const char *who = NULL, *slash = strrchr(paths[p], '/');
-        assert_true(exr_attr_string(f, p, "who", &who));
+        assert_true(exrio_attr_string(f, p, "who", &who));
         assert_string_equal(who, slash + 1);
         for (int c = 0; c < f->parts[p].channel_count; c++)
             assert_memory_equal(f->parts[p].channels[c].data, pixels, sizeof pixels);
     }
-    exr_file_close(f);
+    exrio_file_close(f);
 }
 
 static void passes_are_named_after_their_files(void **state)
@@ -65,10 +65,10 @@ static void passes_are_named_after_their_files(void **state)
 static void duplicates_and_missing_files_are_errors(void **state)
 {
     (void)state;
-    exr_file *f;
+    exrio_file *f;
     error e = {0};
     const char *twice[] = {write_file("x_P.exr", "P.X"), write_file("x_Q.exr", "P.X")};
-    assert_false(exr_file_open_all(twice, 2, &f, &e));
+    assert_false(exrio_file_open_all(twice, 2, &f, &e));
     assert_null(f);
     assert_int_equal(e.code, ERR_INPUT);
     assert_string_equal(e.channel, "P.X");
@@ -76,7 +76,7 @@ static void duplicates_and_missing_files_are_errors(void **state)
     assert_non_null(strstr(e.message, "x_P.exr"));
     const char *missing[] = {twice[0], "/nonexistent/y.exr"};
     e = (error){0};
-    assert_false(exr_file_open_all(missing, 2, &f, &e));
+    assert_false(exrio_file_open_all(missing, 2, &f, &e));
     assert_non_null(strstr(e.file, "y.exr"));
 }
 

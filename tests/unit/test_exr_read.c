@@ -4,7 +4,7 @@
 
 #include <openexr.h>
 
-#include "exr_support.h"
+#include "exrio_support.h"
 
 static char module_folder[4096];
 
@@ -29,7 +29,7 @@ static bool have_module(void)
 static void write_image(const image *im, const char *path)
 {
     error e = {0};
-    assert_ok(exr_write(path, &im->part, 1, 2, &e), e);
+    assert_ok(exrio_write(path, &im->part, 1, 2, &e), e);
 }
 
 // Finite values in smooth runs: lossy codecs differ in how they treat NaN, and must have something to lose.
@@ -41,7 +41,7 @@ static void make_finite(image *im)
         for (size_t i = 0; i < n; i++) {
             float f = (float)(i % 97) * 0.013f + (float)c;
             uint16_t h;
-            exr_to_half(&f, 1, 1, &h);
+            exrio_to_half(&f, 1, 1, &h);
             uint32_t u = (uint32_t)(i * 7);
             const void *from = im->channels[c].type == SAMPLE_HALF    ? (void *)&h
                                : im->channels[c].type == SAMPLE_FLOAT ? (void *)&f
@@ -66,15 +66,15 @@ static void test_tiled(void **state)
         for (int threads = 1; threads <= 3; threads += 2) {
             const char *tiled = in_scratch("tiled.exr");
             assert_int_equal(run_command("exrmaketiled %s '%s' '%s'", options[i], in_scratch("t.exr"), tiled), 0);
-            exr_file *f = open_all(tiled, threads);
+            exrio_file *f = open_all(tiled, threads);
             assert_true(f->parts[0].tiled);
             assert_same_pixels(&im, &f->parts[0]);
-            exr_file_close(f);
+            exrio_file_close(f);
         }
     free_image(&im);
 }
 
-static void assert_same_parts(const exr_part *a, const exr_part *b)
+static void assert_same_parts(const exrio_part *a, const exrio_part *b)
 {
     size_t n = (size_t)box2_width(a->data_window) * (size_t)box2_height(a->data_window);
     assert_true(box2_equal(a->data_window, b->data_window));
@@ -96,17 +96,17 @@ static void check_lossy(const char *codec, int number, bool through_module)
     assert_int_equal(run_command("exrmaketiled -z %s -t 64 64 '%s' '%s'", codec, in_scratch("l.exr"), in_scratch("lossy.exr")),
                      0);
     assert_int_equal(run_command("exrmaketiled -z none '%s' '%s'", in_scratch("lossy.exr"), in_scratch("plain.exr")), 0);
-    exr_file *lossy = open_all(in_scratch("lossy.exr"), 2), *plain = open_all(in_scratch("plain.exr"), 2);
+    exrio_file *lossy = open_all(in_scratch("lossy.exr"), 2), *plain = open_all(in_scratch("plain.exr"), 2);
     assert_int_equal(lossy->parts[0].compression, number);
     assert_true(lossy->parts[0].lossy);
     assert_same_parts(&lossy->parts[0], &plain->parts[0]);
     const char *changed = through_module ? "R" : number == EXR_COMPRESSION_PXR24 ? "Z" : "a.R";
-    const exr_channel *c = find_channel(&lossy->parts[0], changed);
+    const exrio_channel *c = find_channel(&lossy->parts[0], changed);
     for (int i = 0; i < 7; i++)
         if (strcmp(im.channels[i].name, changed) == 0)
             assert_memory_not_equal(c->data, im.channels[i].data, 131 * 77 * sample_size(c->type));
-    exr_file_close(lossy);
-    exr_file_close(plain);
+    exrio_file_close(lossy);
+    exrio_file_close(plain);
     free_image(&im);
 }
 
@@ -136,22 +136,22 @@ static void test_dwa_without_the_module(void **state)
 #endif
     image im;
     error e = {0};
-    exr_file *f = NULL;
+    exrio_file *f = NULL;
     make_image(&im, 8, 8, EXR_COMPRESSION_ZIP, false);
     write_image(&im, in_scratch("w.exr"));
     assert_int_equal(run_command("exrmaketiled -z dwaa '%s' '%s'", in_scratch("w.exr"), in_scratch("dwaa.exr")), 0);
-    assert_ok(exr_file_open(in_scratch("dwaa.exr"), &f, &e), e);
+    assert_ok(exrio_file_open(in_scratch("dwaa.exr"), &f, &e), e);
     f->parts[0].channels[0].wanted = true;
     char *folder = strdup(getenv("SSDO_PLUGIN_DIR"));
     setenv("SSDO_PLUGIN_DIR", "/nowhere", 1);
-    assert_false(exr_file_load(f, 1, &e));
+    assert_false(exrio_file_load(f, 1, &e));
     setenv("SSDO_PLUGIN_DIR", folder, 1);
     free(folder);
     assert_int_equal(e.code, ERR_INPUT);
     assert_non_null(strstr(e.message, "SSDO_PLUGIN_DIR"));
     assert_non_null(strstr(e.message, "/nowhere"));
     assert_null(f->parts[0].channels[0].data);
-    exr_file_close(f);
+    exrio_file_close(f);
     free_image(&im);
 }
 
@@ -166,21 +166,21 @@ static void test_line_orders(void **state)
         {"increasingY", "", 0}, {"decreasingY", "", 1}, {"randomY", "--tile 16 16", 2}, {"decreasingY", "--tile 16 16", 1}};
     assert_int_equal(
         run_command("oiiotool --pattern noise:seed=1 70x90 3 -d half --compression none -o '%s'", in_scratch("n.exr")), 0);
-    exr_file *plain = open_all(in_scratch("n.exr"), 1);
+    exrio_file *plain = open_all(in_scratch("n.exr"), 1);
     for (size_t i = 0; i < sizeof orders / sizeof *orders; i++)
         for (int zip = 0; zip < 2; zip++) {
             const char *path = in_scratch("ordered.exr");
             assert_int_equal(run_command("oiiotool '%s' %s --attrib openexr:lineOrder %s -d half --compression %s -o '%s'",
                                          in_scratch("n.exr"), orders[i].tiles, orders[i].name, zip ? "zip" : "none", path),
                              0);
-            exr_file *f = open_all(path, 2);
+            exrio_file *f = open_all(path, 2);
             exr_lineorder_t order;
             exr_get_lineorder(f->core, 0, &order);
             assert_int_equal(order, orders[i].order);
             assert_same_parts(&plain->parts[0], &f->parts[0]);
-            exr_file_close(f);
+            exrio_file_close(f);
         }
-    exr_file_close(plain);
+    exrio_file_close(plain);
 }
 
 static void test_multipart(void **state)
@@ -196,7 +196,7 @@ static void test_multipart(void **state)
     assert_int_equal(run_command("exrmultipart -combine -i '%s::flat' '%s::tiled' -o '%s' >/dev/null", in_scratch("pa.exr"),
                                  in_scratch("pt.exr"), in_scratch("parts.exr")),
                      0);
-    exr_file *f = open_all(in_scratch("parts.exr"), 3);
+    exrio_file *f = open_all(in_scratch("parts.exr"), 3);
     assert_int_equal(f->part_count, 2);
     for (int i = 0; i < 2; i++) {
         bool tiled = f->parts[i].tiled;
@@ -204,7 +204,7 @@ static void test_multipart(void **state)
         assert_same_pixels(tiled ? &b : &a, &f->parts[i]);
     }
     assert_true(f->parts[0].tiled != f->parts[1].tiled);
-    exr_file_close(f);
+    exrio_file_close(f);
     free_image(&a);
     free_image(&b);
 }

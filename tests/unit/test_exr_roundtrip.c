@@ -2,7 +2,7 @@
 #include <openexr.h>
 
 #include "exr/codec.h"
-#include "exr_support.h"
+#include "exrio_support.h"
 
 static const int lossless[] = {EXR_COMPRESSION_NONE, EXR_COMPRESSION_RLE, EXR_COMPRESSION_ZIPS, EXR_COMPRESSION_ZIP,
                                EXR_COMPRESSION_PIZ};
@@ -18,13 +18,13 @@ static void test_every_bit_survives(void **state)
                 image im;
                 error e = {0};
                 make_image(&im, sizes[s][0], sizes[s][1], lossless[c], noise);
-                assert_ok(exr_write(in_scratch("a.exr"), &im.part, 1, 2, &e), e);
-                exr_file *f = open_all(in_scratch("a.exr"), 2);
+                assert_ok(exrio_write(in_scratch("a.exr"), &im.part, 1, 2, &e), e);
+                exrio_file *f = open_all(in_scratch("a.exr"), 2);
                 assert_int_equal(f->part_count, 1);
                 assert_int_equal(f->parts[0].compression, lossless[c]);
                 assert_false(f->parts[0].lossy);
                 assert_same_pixels(&im, &f->parts[0]);
-                exr_file_close(f);
+                exrio_file_close(f);
                 free_image(&im);
             }
 }
@@ -39,10 +39,10 @@ static void test_threads_do_not_matter(void **state)
         size_t size = 0, other_size;
         make_image(&im, 90, 170, lossless[c], true);
         for (int threads = 1; threads <= 4; threads++) {
-            assert_ok(exr_write(in_scratch("t.exr"), &im.part, 1, threads, &e), e);
-            exr_file *f = open_all(in_scratch("t.exr"), threads);
+            assert_ok(exrio_write(in_scratch("t.exr"), &im.part, 1, threads, &e), e);
+            exrio_file *f = open_all(in_scratch("t.exr"), threads);
             assert_same_pixels(&im, &f->parts[0]);
-            exr_file_close(f);
+            exrio_file_close(f);
             uint8_t *bytes = slurp(in_scratch("t.exr"), &other_size);
             if (!first) {
                 first = bytes;
@@ -68,11 +68,11 @@ static void test_level_changes_size_only(void **state)
     make_image(&im, 200, 100, EXR_COMPRESSION_ZIP, false);
     for (int i = 0; i < 3; i++) {
         im.part.level = levels[i];
-        assert_ok(exr_write(in_scratch("l.exr"), &im.part, 1, 2, &e), e);
+        assert_ok(exrio_write(in_scratch("l.exr"), &im.part, 1, 2, &e), e);
         test_free(slurp(in_scratch("l.exr"), &sizes[i]));
-        exr_file *f = open_all(in_scratch("l.exr"), 1);
+        exrio_file *f = open_all(in_scratch("l.exr"), 1);
         assert_same_pixels(&im, &f->parts[0]);
-        exr_file_close(f);
+        exrio_file_close(f);
     }
     assert_true(sizes[1] < sizes[0] && sizes[2] <= sizes[1]);
     free_image(&im);
@@ -88,17 +88,17 @@ static void test_chunks_of_their_own_size(void **state)
         error e = {0};
         uint16_t *data = make_samples(SAMPLE_HALF, W * H, 9, true);
         for (int y = 0; y < H; y++) memset(data + y * W, 0, (size_t)(y / 8 % 50) * 2);
-        exr_out_channel channel = {"Y", SAMPLE_HALF, data};
-        exr_out_part part = {.data_window = {0, 0, W - 1, H - 1},
-                             .display_window = {0, 0, W - 1, H - 1},
-                             .pixel_aspect = 1,
-                             .compression = lossless[c],
-                             .channels = &channel,
-                             .channel_count = 1};
-        assert_ok(exr_write(in_scratch("own.exr"), &part, 1, 1, &e), e);
-        exr_file *f = open_all(in_scratch("own.exr"), 1);
+        exrio_out_channel channel = {"Y", SAMPLE_HALF, data};
+        exrio_out_part part = {.data_window = {0, 0, W - 1, H - 1},
+                               .display_window = {0, 0, W - 1, H - 1},
+                               .pixel_aspect = 1,
+                               .compression = lossless[c],
+                               .channels = &channel,
+                               .channel_count = 1};
+        assert_ok(exrio_write(in_scratch("own.exr"), &part, 1, 1, &e), e);
+        exrio_file *f = open_all(in_scratch("own.exr"), 1);
         assert_memory_equal(f->parts[0].channels[0].data, data, W * H * 2);
-        exr_file_close(f);
+        exrio_file_close(f);
         test_free(data);
     }
 }
@@ -130,24 +130,24 @@ static void test_partial_load(void **state)
     (void)state;
     image im;
     error e = {0};
-    exr_file *f = NULL;
+    exrio_file *f = NULL;
     make_image(&im, 61, 45, EXR_COMPRESSION_ZIP, true);
-    assert_ok(exr_write(in_scratch("p.exr"), &im.part, 1, 1, &e), e);
-    assert_ok(exr_file_open(in_scratch("p.exr"), &f, &e), e);
-    exr_channel *z = (exr_channel *)(uintptr_t)find_channel(&f->parts[0], "Z");
-    exr_channel *g = (exr_channel *)(uintptr_t)find_channel(&f->parts[0], "a.G");
+    assert_ok(exrio_write(in_scratch("p.exr"), &im.part, 1, 1, &e), e);
+    assert_ok(exrio_file_open(in_scratch("p.exr"), &f, &e), e);
+    exrio_channel *z = (exrio_channel *)(uintptr_t)find_channel(&f->parts[0], "Z");
+    exrio_channel *g = (exrio_channel *)(uintptr_t)find_channel(&f->parts[0], "a.G");
     z->wanted = true;
-    assert_ok(exr_file_load(f, 2, &e), e);
+    assert_ok(exrio_file_load(f, 2, &e), e);
     assert_non_null(z->data);
     assert_null(g->data);
     const void *before = z->data;
     memset(z->data, 7, 4);
     g->wanted = true;
-    assert_ok(exr_file_load(f, 2, &e), e);
+    assert_ok(exrio_file_load(f, 2, &e), e);
     assert_ptr_equal(z->data, before);
     assert_int_equal(((uint8_t *)z->data)[0], 7);
     assert_memory_equal(g->data, im.channels[2].data, 61 * 45 * 2);
-    exr_file_close(f);
+    exrio_file_close(f);
     free_image(&im);
 }
 
@@ -187,7 +187,7 @@ static void test_to_half(void **state)
         float spread[N * 4];
         for (int i = 0; i < N * 4; i++) spread[i] = 1e38f; // must not be read
         for (size_t i = 0; i < N; i++) spread[i * stride] = in[i];
-        assert_int_equal(exr_to_half(spread, stride, N, out), 7);
+        assert_int_equal(exrio_to_half(spread, stride, N, out), 7);
         assert_memory_equal(out, expected, sizeof expected);
     }
 }

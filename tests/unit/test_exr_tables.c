@@ -1,6 +1,6 @@
 // Files whose chunk tables are all zero, as exrmultipart of OpenEXR 3.2 and later leaves them: read as if the tables were there,
 // and refused where a chunk is missing, cut or twice there.
-#include "exr_raw.h"
+#include "exrio_raw.h"
 
 #include <openexr.h>
 
@@ -20,13 +20,13 @@ static size_t find_tables(const uint8_t *bytes, size_t size, size_t entries)
 
 static bool reads(const char *path, error *e)
 {
-    exr_file *f = NULL;
+    exrio_file *f = NULL;
     *e = (error){0};
-    if (!exr_file_open(path, &f, e)) return false;
+    if (!exrio_file_open(path, &f, e)) return false;
     for (int p = 0; p < f->part_count; p++)
         for (int c = 0; c < f->parts[p].channel_count; c++) f->parts[p].channels[c].wanted = true;
-    bool ok = exr_file_load(f, 2, e);
-    exr_file_close(f);
+    bool ok = exrio_file_load(f, 2, e);
+    exrio_file_close(f);
     return ok;
 }
 
@@ -41,14 +41,14 @@ static void expect_refused(const uint8_t *bytes, size_t size)
 
 static void expect_same(const char *path, const char *wanted)
 {
-    exr_file *a = open_all(path, 2), *b = open_all(wanted, 2);
+    exrio_file *a = open_all(path, 2), *b = open_all(wanted, 2);
     assert_int_equal(a->part_count, b->part_count);
     for (int p = 0; p < a->part_count; p++)
         for (int c = 0; c < a->parts[p].channel_count; c++)
             assert_memory_equal(a->parts[p].channels[c].data, b->parts[p].channels[c].data,
                                 WIDTH * HEIGHT * sample_size(a->parts[p].channels[c].type));
-    exr_file_close(a);
-    exr_file_close(b);
+    exrio_file_close(a);
+    exrio_file_close(b);
 }
 
 // The file of `entries` chunks, each with a place of `place` bytes, reads the same without its tables, and no damage is
@@ -88,9 +88,9 @@ static void test_scanlines(void **state)
             image im;
             error e = {0};
             make_image(&im, WIDTH, HEIGHT, kinds[k], false);
-            exr_out_part both[] = {im.part, im.part};
+            exrio_out_part both[] = {im.part, im.part};
             both[0].name = "one", both[1].name = "two";
-            assert_ok(exr_write(in_scratch("plain.exr"), both, parts, 1, &e), e);
+            assert_ok(exrio_write(in_scratch("plain.exr"), both, parts, 1, &e), e);
             int lines = kinds[k] == EXR_COMPRESSION_ZIP ? LINES : 1;
             check_without_tables(in_scratch("plain.exr"), (size_t)(parts * ((HEIGHT + lines - 1) / lines)), parts == 1 ? 4 : 8);
             free_image(&im);
@@ -104,7 +104,7 @@ static void test_tiles(void **state)
     error e = {0};
     if (!have_tool("oiiotool")) skip();
     make_image(&im, WIDTH, HEIGHT, EXR_COMPRESSION_ZIP, false);
-    assert_ok(exr_write(in_scratch("plain.exr"), &im.part, 1, 1, &e), e);
+    assert_ok(exrio_write(in_scratch("plain.exr"), &im.part, 1, 1, &e), e);
     assert_int_equal(run_command("oiiotool '%s' --tile 16 16 -o '%s'", in_scratch("plain.exr"), in_scratch("tiled.exr")), 0);
     check_without_tables(in_scratch("tiled.exr"), (HEIGHT + LINES - 1) / LINES, 16);
     free_image(&im);

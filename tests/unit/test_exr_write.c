@@ -7,15 +7,15 @@
 
 #include <openexr.h>
 
-#include "exr_raw.h"
+#include "exrio_raw.h"
 
-static const exr_attribute_t *attribute(const exr_file *f, int part, const char *name)
+static const exr_attribute_t *attribute(const exrio_file *f, int part, const char *name)
 {
     const exr_attribute_t *a = NULL;
     return exr_get_attribute_by_name(f->core, part, name, &a) == EXR_ERR_SUCCESS ? a : NULL;
 }
 
-static void write_copy(const exr_file *in, const exr_out_attr *ours, int count, const char *to)
+static void write_copy(const exrio_file *in, const exrio_out_attr *ours, int count, const char *to)
 {
     error e = {0};
     image im;
@@ -23,7 +23,7 @@ static void write_copy(const exr_file *in, const exr_out_attr *ours, int count, 
     im.part.attributes_from = in;
     im.part.attributes = ours;
     im.part.attribute_count = count;
-    assert_ok(exr_write(to, &im.part, 1, 2, &e), e);
+    assert_ok(exrio_write(to, &im.part, 1, 2, &e), e);
     free_image(&im);
 }
 
@@ -52,7 +52,7 @@ static void put_odd_attributes(raw_file *r)
     raw_attribute(r, "count", "int", "\7\0\0\0", 4);
 }
 
-static exr_file *open_odd(const char *path)
+static exrio_file *open_odd(const char *path)
 {
     static raw_file r;
     raw_start(&r, 0x400);
@@ -61,27 +61,27 @@ static exr_file *open_odd(const char *path)
     put_odd_attributes(&r);
     raw_finish(&r);
     raw_save(&r, path);
-    exr_file *f = NULL;
+    exrio_file *f = NULL;
     error e = {0};
-    assert_ok(exr_file_open(path, &f, &e), e);
+    assert_ok(exrio_file_open(path, &f, &e), e);
     return f;
 }
 
 static void test_attributes_pass_through(void **state)
 {
     (void)state;
-    exr_file *in = open_odd(in_scratch("odd.exr"));
+    exrio_file *in = open_odd(in_scratch("odd.exr"));
     write_copy(in, NULL, 0, in_scratch("copy.exr"));
-    exr_file *out = open_all(in_scratch("copy.exr"), 1);
+    exrio_file *out = open_all(in_scratch("copy.exr"), 1);
     const char *s = NULL;
     double m[4][4], xy[8], v;
-    assert_true(exr_attr_string(out, 0, "BlenderMultiChannel", &s) && strcmp(s, "Blender V2.55.1 and newer") == 0);
-    assert_true(exr_attr_string(out, 0, "cryptomatte/abc1234/manifest", &s) && strcmp(s, "{\"a\":\"00\"}") == 0);
-    assert_true(exr_attr_string(out, 0, "an attribute whose name is longer than 31 bytes", &s) && strcmp(s, "long") == 0);
-    assert_true(exr_attr_string(out, 0, "empty", &s) && !s[0]);
-    assert_true(exr_attr_m44(out, 0, "worldToCamera", m) && m[0][1] == 1.5 && m[3][0] == 12.5);
-    assert_true(exr_attr_chromaticities(out, 0, xy) && xy[0] == (double)0.64f && xy[7] == (double)0.329f);
-    assert_true(exr_attr_float(out, 0, "count", &v) && v == 7);
+    assert_true(exrio_attr_string(out, 0, "BlenderMultiChannel", &s) && strcmp(s, "Blender V2.55.1 and newer") == 0);
+    assert_true(exrio_attr_string(out, 0, "cryptomatte/abc1234/manifest", &s) && strcmp(s, "{\"a\":\"00\"}") == 0);
+    assert_true(exrio_attr_string(out, 0, "an attribute whose name is longer than 31 bytes", &s) && strcmp(s, "long") == 0);
+    assert_true(exrio_attr_string(out, 0, "empty", &s) && !s[0]);
+    assert_true(exrio_attr_m44(out, 0, "worldToCamera", m) && m[0][1] == 1.5 && m[3][0] == 12.5);
+    assert_true(exrio_attr_chromaticities(out, 0, xy) && xy[0] == (double)0.64f && xy[7] == (double)0.329f);
+    assert_true(exrio_attr_float(out, 0, "count", &v) && v == 7);
     assert_int_equal(attribute(out, 0, "zeros")->string->length, 3);
     assert_memory_equal(attribute(out, 0, "zeros")->string->str, "a\0b", 3);
     assert_string_equal(attribute(out, 0, "vendor")->type_name, "vendorType");
@@ -93,35 +93,35 @@ static void test_attributes_pass_through(void **state)
     assert_string_equal(attribute(out, 0, "strings")->stringvector->strings[2].str, "!");
     assert_int_equal(attribute(out, 0, "preview")->preview->rgba[3], 0x40);
     // Structural ones are the writer's.
-    assert_false(exr_attr_exists(out, 0, "tiles"));
-    assert_false(exr_attr_exists(out, 0, "name"));
-    assert_false(exr_attr_exists(out, 0, "view"));
+    assert_false(exrio_attr_exists(out, 0, "tiles"));
+    assert_false(exrio_attr_exists(out, 0, "name"));
+    assert_false(exrio_attr_exists(out, 0, "view"));
     assert_false(out->parts[0].tiled);
     // And asking for what is not there, or of another type, is no error.
-    assert_false(exr_attr_string(out, 0, "count", &s) || exr_attr_string(out, 0, "none", &s));
-    assert_false(exr_attr_m44(out, 0, "count", m) || exr_attr_v2(out, 0, "count", &m[0][0]) ||
-                 exr_attr_float(out, 0, "empty", &v));
-    exr_file_close(out);
-    exr_file_close(in);
+    assert_false(exrio_attr_string(out, 0, "count", &s) || exrio_attr_string(out, 0, "none", &s));
+    assert_false(exrio_attr_m44(out, 0, "count", m) || exrio_attr_v2(out, 0, "count", &m[0][0]) ||
+                 exrio_attr_float(out, 0, "empty", &v));
+    exrio_file_close(out);
+    exrio_file_close(in);
 }
 
 static void test_ours_replace(void **state)
 {
     (void)state;
-    exr_file *in = open_odd(in_scratch("odd.exr"));
-    exr_out_attr ours[] = {{.name = "count", .kind = EXR_OUT_STRING, .string = "seven"},
-                           {.name = "ssdo/version", .kind = EXR_OUT_STRING, .string = "1.0"},
-                           {.name = "ssdo/radius", .kind = EXR_OUT_FLOAT, .number = 0.25},
-                           {.name = "worldToCamera", .kind = EXR_OUT_M44, .m44 = {{1}, {0, 2}, {0, 0, 3}, {4, 5, 6, 1}}}};
+    exrio_file *in = open_odd(in_scratch("odd.exr"));
+    exrio_out_attr ours[] = {{.name = "count", .kind = EXRIO_OUT_STRING, .string = "seven"},
+                             {.name = "ssdo/version", .kind = EXRIO_OUT_STRING, .string = "1.0"},
+                             {.name = "ssdo/radius", .kind = EXRIO_OUT_FLOAT, .number = 0.25},
+                             {.name = "worldToCamera", .kind = EXRIO_OUT_M44, .m44 = {{1}, {0, 2}, {0, 0, 3}, {4, 5, 6, 1}}}};
     write_copy(in, ours, 4, in_scratch("ours.exr"));
-    exr_file_close(in);
-    exr_file *out = open_all(in_scratch("ours.exr"), 1);
+    exrio_file_close(in);
+    exrio_file *out = open_all(in_scratch("ours.exr"), 1);
     const char *s = NULL;
     double m[4][4], v;
-    assert_true(exr_attr_string(out, 0, "count", &s) && strcmp(s, "seven") == 0);
-    assert_true(exr_attr_float(out, 0, "ssdo/radius", &v) && v == 0.25);
-    assert_true(exr_attr_m44(out, 0, "worldToCamera", m) && m[1][1] == 2 && m[3][2] == 6);
-    exr_file_close(out);
+    assert_true(exrio_attr_string(out, 0, "count", &s) && strcmp(s, "seven") == 0);
+    assert_true(exrio_attr_float(out, 0, "ssdo/radius", &v) && v == 0.25);
+    assert_true(exrio_attr_m44(out, 0, "worldToCamera", m) && m[1][1] == 2 && m[3][2] == 6);
+    exrio_file_close(out);
 }
 
 static uint32_t version_field(const char *path)
@@ -140,14 +140,14 @@ static void test_long_names_are_flagged_only_when_there(void **state)
     error e = {0};
     image im;
     make_image(&im, 4, 4, EXR_COMPRESSION_ZIP, false);
-    assert_ok(exr_write(in_scratch("s.exr"), &im.part, 1, 1, &e), e);
+    assert_ok(exrio_write(in_scratch("s.exr"), &im.part, 1, 1, &e), e);
     assert_int_equal(version_field(in_scratch("s.exr")), 2);
     im.channels[0].name = "a layer with a very long name.Combined.R";
-    assert_ok(exr_write(in_scratch("s.exr"), &im.part, 1, 1, &e), e);
+    assert_ok(exrio_write(in_scratch("s.exr"), &im.part, 1, 1, &e), e);
     assert_int_equal(version_field(in_scratch("s.exr")), 0x402);
-    exr_file *f = open_all(in_scratch("s.exr"), 1);
+    exrio_file *f = open_all(in_scratch("s.exr"), 1);
     assert_same_pixels(&im, &f->parts[0]);
-    exr_file_close(f);
+    exrio_file_close(f);
     free_image(&im);
 }
 
@@ -158,25 +158,25 @@ static void test_parts(void **state)
     image a, b;
     make_image(&a, 40, 50, EXR_COMPRESSION_ZIP, true);
     make_image(&b, 40, 50, EXR_COMPRESSION_PIZ, false);
-    exr_out_part parts[2] = {a.part, b.part};
+    exrio_out_part parts[2] = {a.part, b.part};
     parts[0].name = "one";
     parts[1].name = "two";
     parts[1].view = "right";
-    assert_ok(exr_write(in_scratch("m.exr"), parts, 2, 3, &e), e);
-    exr_file *f = open_all(in_scratch("m.exr"), 2);
+    assert_ok(exrio_write(in_scratch("m.exr"), parts, 2, 3, &e), e);
+    exrio_file *f = open_all(in_scratch("m.exr"), 2);
     assert_int_equal(f->part_count, 2);
     assert_string_equal(f->parts[0].name, "one");
     assert_string_equal(f->parts[0].view, "");
     assert_string_equal(f->parts[1].view, "right");
     assert_same_pixels(&a, &f->parts[0]);
     assert_same_pixels(&b, &f->parts[1]);
-    exr_file_close(f);
+    exrio_file_close(f);
     parts[1].name = "one";
-    assert_false(exr_write(in_scratch("m.exr"), parts, 2, 1, &e));
+    assert_false(exrio_write(in_scratch("m.exr"), parts, 2, 1, &e));
     assert_int_equal(e.code, ERR_OUTPUT);
     e = (error){0};
     parts[1].name = NULL;
-    assert_false(exr_write(in_scratch("m.exr"), parts, 2, 1, &e));
+    assert_false(exrio_write(in_scratch("m.exr"), parts, 2, 1, &e));
     assert_int_equal(e.code, ERR_OUTPUT);
     free_image(&a);
     free_image(&b);
@@ -202,15 +202,15 @@ static void test_refusals_leave_the_target(void **state)
     int before = files_in_scratch();
     for (int i = 0; i < 4; i++) {
         error e = {0};
-        exr_out_part p = im.part;
-        exr_out_channel channels[7];
+        exrio_out_part p = im.part;
+        exrio_out_channel channels[7];
         memcpy(channels, im.channels, sizeof channels);
         p.channels = channels;
         if (i == 0) channels[3].name = "R";
         if (i == 1) p.compression = EXR_COMPRESSION_DWAA;
         if (i == 2) p.channel_count = 0;
         if (i == 3) p.data_window.x1 = p.data_window.x0 - 1;
-        assert_false(exr_write(in_scratch("target.exr"), &p, 1, 2, &e));
+        assert_false(exrio_write(in_scratch("target.exr"), &p, 1, 2, &e));
         assert_int_equal(e.code, ERR_OUTPUT);
         if (i == 0) assert_string_equal(e.channel, "R");
     }
@@ -236,7 +236,7 @@ static void test_full_disk(void **state)
     small = (struct rlimit){100000, old.rlim_max};
     signal(SIGXFSZ, SIG_IGN);
     setrlimit(RLIMIT_FSIZE, &small);
-    bool ok = exr_write(in_scratch("full.exr"), &im.part, 1, 4, &e);
+    bool ok = exrio_write(in_scratch("full.exr"), &im.part, 1, 4, &e);
     setrlimit(RLIMIT_FSIZE, &old);
     assert_false(ok);
     assert_int_equal(e.code, ERR_OUTPUT);
@@ -259,7 +259,7 @@ static void test_folders(void **state)
     for (int i = 0; i < 3; i++) {
         error e = {0};
         const char *path = i == 0 ? in_scratch("none/a.exr") : i == 1 ? "/proc/a.exr" : scratch_folder;
-        assert_false(exr_write(path, &im.part, 1, 1, &e));
+        assert_false(exrio_write(path, &im.part, 1, 1, &e));
         assert_int_equal(e.code, ERR_OUTPUT);
         if (i == 0) assert_non_null(strstr(e.message, missing));
         if (i == 1) assert_non_null(strstr(e.message, "/proc"));
@@ -276,7 +276,7 @@ static void test_only_regular_files_are_replaced(void **state)
     struct stat st;
     make_image(&im, 2, 2, EXR_COMPRESSION_ZIP, false);
     assert_int_equal(mkfifo(in_scratch("pipe"), 0600), 0);
-    assert_false(exr_write(in_scratch("pipe"), &im.part, 1, 1, &e));
+    assert_false(exrio_write(in_scratch("pipe"), &im.part, 1, 1, &e));
     assert_int_equal(e.code, ERR_OUTPUT);
     assert_true(lstat(in_scratch("pipe"), &st) == 0 && S_ISFIFO(st.st_mode));
     free_image(&im);
@@ -292,12 +292,12 @@ static void test_replacing_keeps_link_and_rights(void **state)
     spill(in_scratch("real.exr"), "old", 3);
     chmod(in_scratch("real.exr"), 0640);
     assert_int_equal(symlink("real.exr", in_scratch("link.exr")), 0);
-    assert_ok(exr_write(in_scratch("link.exr"), &im.part, 1, 1, &e), e);
+    assert_ok(exrio_write(in_scratch("link.exr"), &im.part, 1, 1, &e), e);
     assert_true(lstat(in_scratch("link.exr"), &st) == 0 && S_ISLNK(st.st_mode));
     assert_true(stat(in_scratch("real.exr"), &st) == 0 && (st.st_mode & 0777) == 0640);
-    exr_file *f = open_all(in_scratch("real.exr"), 1);
+    exrio_file *f = open_all(in_scratch("real.exr"), 1);
     assert_same_pixels(&im, &f->parts[0]);
-    exr_file_close(f);
+    exrio_file_close(f);
     free_image(&im);
 }
 
@@ -315,15 +315,15 @@ static void test_other_programs_read_it(void **state)
         image im;
         const char *path = in_scratch("o.exr"), *back = in_scratch("b.exr");
         make_image(&im, 77, 65, kinds[i % 5], i < 5);
-        assert_ok(exr_write(path, &im.part, 1, 2, &e), e);
+        assert_ok(exrio_write(path, &im.part, 1, 2, &e), e);
         if (info) assert_int_equal(run_command("exrinfo -s '%s' >/dev/null 2>&1", path), 0);
         if (oiiotool) assert_int_equal(run_command("oiiotool --hash '%s' >/dev/null 2>&1", path), 0);
         if (maketiled) {
             assert_int_equal(run_command("exrmaketiled -z none '%s' '%s'", path, back), 0);
-            exr_file *f = open_all(back, 1);
+            exrio_file *f = open_all(back, 1);
             assert_true(f->parts[0].tiled);
             assert_same_pixels(&im, &f->parts[0]);
-            exr_file_close(f);
+            exrio_file_close(f);
         }
         free_image(&im);
     }

@@ -26,19 +26,19 @@ static bool warned(const char *a, const char *b)
 }
 
 // The still life in plain names, P, N and Z float, FINE times as fine as W x H.
-static exr_file *render(int scale)
+static exrio_file *render(int scale)
 {
     scene s = {0};
     error e = {0};
     scene_clutter(&s);
     view v = view_perspective(W * scale, H * scale, 45.0, 1.0);
     view_scene(&v, &s);
-    exr_file *f = scene_file(&s, &v, &(scene_exr_options){.convention = "plain"}, &e);
+    exrio_file *f = scene_file(&s, &v, &(scene_exr_options){.convention = "plain"}, &e);
     must(f != NULL, &e);
     return f;
 }
 
-static float *data_of(const exr_file *f, const char *name)
+static float *data_of(const exrio_file *f, const char *name)
 {
     for (int c = 0; c < f->parts[0].channel_count; c++)
         if (strcmp(f->parts[0].channels[c].name, name) == 0) return f->parts[0].channels[c].data;
@@ -47,7 +47,7 @@ static float *data_of(const exr_file *f, const char *name)
 }
 
 // A box filter over the fine picture's pixels.
-static void filter_channel(const exr_file *fine, exr_file *to, const char *name)
+static void filter_channel(const exrio_file *fine, exrio_file *to, const char *name)
 {
     const float *from = data_of(fine, name);
     float *out = data_of(to, name);
@@ -59,7 +59,7 @@ static void filter_channel(const exr_file *fine, exr_file *to, const char *name)
         }
 }
 
-static void listen(const exr_file *f)
+static void listen(const exrio_file *f)
 {
     resolution r;
     gbuffer g;
@@ -74,7 +74,7 @@ static void listen(const exr_file *f)
 static void a_sound_file_is_not_warned_of(void **state)
 {
     (void)state;
-    exr_file *f = render(1);
+    exrio_file *f = render(1);
     listen(f);
     assert_int_equal(heard.warning_count, 0);
     scene_file_free(f);
@@ -84,9 +84,9 @@ static void filtered_passes_are_named(void **state)
 {
     static const char *const cases[][5] = {{"position", "P.X", "P.Y", "P.Z"}, {"normal", "N.X", "N.Y", "N.Z"}, {"depth", "Z"}};
     (void)state;
-    exr_file *fine = render(FINE);
+    exrio_file *fine = render(FINE);
     for (int i = 0; i < 3; i++) {
-        exr_file *f = render(1);
+        exrio_file *f = render(1);
         for (int c = 1; cases[i][c]; c++) filter_channel(fine, f, cases[i][c]);
         listen(f);
         for (int k = 0; k < 3; k++) {
@@ -103,7 +103,7 @@ static void filtered_passes_are_named(void **state)
 static void dwa_is_named_with_its_channel_and_share(void **state)
 {
     (void)state;
-    exr_file *f = render(1);
+    exrio_file *f = render(1);
     float *y = data_of(f, "N.Y");
     for (int i = 0; i < W * H; i++) y[i] += 0.01f * (float)sin(0.7 * i);
     f->parts[0].compression = EXR_COMPRESSION_DWAA;

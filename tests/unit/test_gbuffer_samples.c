@@ -66,16 +66,16 @@ static void check_sample(struct json_object *entry)
 {
     char path[256];
     snprintf(path, sizeof path, "samples/%s", string(entry, "file"));
-    exr_file *file;
+    exrio_file *file;
     error e = {0};
     resolution r;
     gbuffer g;
-    if (!exr_file_open(path, &file, &e)) fail_msg("%s: %s", path, e.message);
+    if (!exrio_file_open(path, &file, &e)) fail_msg("%s: %s", path, e.message);
     if (!resolve_channels(file, &(resolve_options){0}, &r, NULL, &e)) fail_msg("%s: %s", path, e.message);
     for (int i = 0; i < ROLE_COUNT; i++)
         for (int c = 0; c < r.components[i]; c++)
             file->parts[r.channels[i][c].part].channels[r.channels[i][c].channel].wanted = true;
-    if (!exr_file_load(file, 2, &e)) fail_msg("%s: %s", path, e.message);
+    if (!exrio_file_load(file, 2, &e)) fail_msg("%s: %s", path, e.message);
     gbuffer_options options = {.need = NEED_ALBEDO | NEED_BEAUTY | NEED_COVERAGE | NEED_DIFFUSE_LIGHT, .threads = 2};
     if (!gbuffer_build(file, &r, &options, &g, NULL, &e)) fail_msg("%s: %s", path, e.message);
     print_message("%s: residual %.3g px, %zu valid, %zu moved, radius %.3g (truth's distance %.3g)\n", path, g.camera.residual,
@@ -91,7 +91,7 @@ static void check_sample(struct json_object *entry)
     assert_non_null(g.albedo);
     assert_non_null(g.coverage);
     gbuffer_free(&g);
-    exr_file_close(file);
+    exrio_file_close(file);
 }
 
 static void test_samples(void **state)

@@ -27,7 +27,7 @@ typedef struct channel_spec {
 static void write_map(box2 data, box2 display, const channel_spec *specs, int count)
 {
     int texels = box2_width(data) * box2_height(data);
-    exr_out_channel channels[8];
+    exrio_out_channel channels[8];
     for (int c = 0; c < count; c++) {
         void *samples = calloc((size_t)texels, sample_size(specs[c].type));
         assert_non_null(samples);
@@ -39,16 +39,16 @@ static void write_map(box2 data, box2 display, const channel_spec *specs, int co
             else
                 ((uint32_t *)samples)[i] = (uint32_t)(specs[c].base + i);
         }
-        channels[c] = (exr_out_channel){specs[c].name, specs[c].type, samples};
+        channels[c] = (exrio_out_channel){specs[c].name, specs[c].type, samples};
     }
-    exr_out_part part = {.data_window = data,
-                         .display_window = display,
-                         .pixel_aspect = 1,
-                         .compression = 3, // zip
-                         .channels = channels,
-                         .channel_count = count};
+    exrio_out_part part = {.data_window = data,
+                           .display_window = display,
+                           .pixel_aspect = 1,
+                           .compression = 3, // zip
+                           .channels = channels,
+                           .channel_count = count};
     error e = {0};
-    if (!exr_write(temporary(), &part, 1, 1, &e)) fail_msg("%s", e.message);
+    if (!exrio_write(temporary(), &part, 1, 1, &e)) fail_msg("%s", e.message);
     for (int c = 0; c < count; c++) free((void *)(uintptr_t)channels[c].data);
 }
 

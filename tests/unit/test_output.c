@@ -167,13 +167,13 @@ static void multipart_copies_the_input(void **state)
     for (int i = 0; i < na; i++) assert_memory_equal(find(b, nb, a[i].name)->bytes, a[i].bytes, a[i].size);
     free_raw(a, na);
     free_raw(b, nb);
-    exr_file *f = NULL;
+    exrio_file *f = NULL;
     error e = {0};
-    must(exr_file_open(path_of("multi.exr"), &f, &e), &e);
+    must(exrio_file_open(path_of("multi.exr"), &f, &e), &e);
     assert_int_equal(f->part_count, 2);
     assert_string_equal(f->parts[1].name, "ssdo");
     assert_int_equal(f->parts[1].channel_count, 11);
-    exr_file_close(f);
+    exrio_file_close(f);
 }
 
 static void make_file(const char *path, const char *convention)
@@ -191,27 +191,27 @@ static void odd_values_pass_through(void **state)
 {
     (void)state;
     error e = {0};
-    exr_file *f = NULL;
+    exrio_file *f = NULL;
     make_file(path_of("plain.exr"), "plain");
-    must(exr_file_open(path_of("plain.exr"), &f, &e), &e);
-    exr_part *p = &f->parts[0];
-    exr_out_channel out[64];
+    must(exrio_file_open(path_of("plain.exr"), &f, &e), &e);
+    exrio_part *p = &f->parts[0];
+    exrio_out_channel out[64];
     for (int c = 0; c < p->channel_count; c++) p->channels[c].wanted = true;
-    must(exr_file_load(f, 1, &e), &e);
+    must(exrio_file_load(f, 1, &e), &e);
     static const uint32_t odd[] = {0x7fc12345u, 0xffa00001u, 0x7f800000u, 0xff800000u, 0x00000001u, 0x80000000u, 0x7149f2cau};
     for (int c = 0; c < p->channel_count; c++) {
         for (int i = 0; i < 7 && p->channels[c].type == SAMPLE_FLOAT; i++)
             memcpy((uint32_t *)p->channels[c].data + 2000 + 7 * c + i, &odd[i], 4);
-        out[c] = (exr_out_channel){p->channels[c].name, p->channels[c].type, p->channels[c].data};
+        out[c] = (exrio_out_channel){p->channels[c].name, p->channels[c].type, p->channels[c].data};
     }
-    exr_out_part part = {.data_window = p->data_window,
-                         .display_window = p->display_window,
-                         .pixel_aspect = 1.0f,
-                         .compression = EXR_COMPRESSION_ZIP,
-                         .channels = out,
-                         .channel_count = p->channel_count};
-    must(exr_write(path_of("odd.exr"), &part, 1, 1, &e), &e);
-    exr_file_close(f);
+    exrio_out_part part = {.data_window = p->data_window,
+                           .display_window = p->display_window,
+                           .pixel_aspect = 1.0f,
+                           .compression = EXR_COMPRESSION_ZIP,
+                           .channels = out,
+                           .channel_count = p->channel_count};
+    must(exrio_write(path_of("odd.exr"), &part, 1, 1, &e), &e);
+    exrio_file_close(f);
     filter_file(path_of("odd.exr"), path_of("odd_out.exr"), NULL);
     channels_pass_through(path_of("odd.exr"), path_of("odd_out.exr"), EXR_PIXEL_FLOAT);
     static raw b[128];

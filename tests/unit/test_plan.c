@@ -16,7 +16,7 @@
 enum { ALBEDO = 1, BEAUTY = 2, ROUGHNESS = 4, EMISSION = 8, DIRECT = 16, INDIRECT = 32, ENV = 64, SETS = 128 };
 
 static char path[] = "in.exr";
-static exr_file file = {.path = path};
+static exrio_file file = {.path = path};
 
 static resolution resolution_of(unsigned inputs)
 {
@@ -94,7 +94,7 @@ static void steps_are_the_decisions(const plan *p)
     assert_string_equal(p->steps[0].pass, p->method->name);
     assert_int_equal(runs(p, "irradiance"), p->irradiance);
     assert_int_equal(runs(p, "blur"), p->blur);
-    assert_int_equal(runs(p, "look"), p->look);
+    assert_int_equal(runs(p, "tone"), p->tone);
     assert_int_equal(runs(p, "bounce"), p->bounce);
     assert_int_equal(runs(p, "specular"), p->specular);
     assert_int_equal(runs(p, "depthmask"), p->depthmask);
@@ -201,7 +201,7 @@ static void what_cannot_be_together_is_refused(void **state)
     for (int i = 0; method_at(i); i++) { // --error
         o = options_of(method_at(i), "occlusion,error", 0);
         o.error = 0.02;
-        assert_int_equal(planned(&o, 0, &p, &e), method_at(i)->has_rounds);
+        assert_int_equal(planned(&o, 0, &p, &e), method_at(i)->adaptive);
     }
     o = options_of(method_find("raytrace"), "occlusion", 0);
     o.mesh = NULL;

@@ -28,7 +28,7 @@ static counts run(const char *defines)
     gpu g;
     log_init(&log, LOG_QUIET);
     must(gpu_open(&g, -1, &log, &e), &e);
-    must(gpu_program_get(&g, "look.comp", NULL, false, &e) != NULL, &e);
+    must(gpu_program_get(&g, "tone.comp", NULL, false, &e) != NULL, &e);
     must(gpu_program_get(&g, "blur.comp", defines, true, &e) != NULL, &e);
     assert_int_equal(glGetError(), GL_NO_ERROR);
     counts c = {g.programs_compiled, g.programs_cached};

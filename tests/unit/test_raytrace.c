@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "light/choices.h"
+#include "light/alias_table.h"
 #include "must.h"
 #include "near.h"
 #include "rig.h"
@@ -198,13 +198,13 @@ static void nothing_becomes_nan(void **state)
 
 // The chances of the table's entries, summed over what they give to each texel, are density times solid angle; and the sun gets
 // what it sends.
-static void choices_follow_the_light(void **state)
+static void alias_table_follows_the_light(void **state)
 {
     (void)state;
     enum { W = 64, H = 32 };
     static float rgb[3 * W * H];
     environment env;
-    env_choices c;
+    env_alias_table c;
     log_t log;
     error e = {0};
     log_init(&log, LOG_QUIET);
@@ -215,7 +215,7 @@ static void choices_follow_the_light(void **state)
         must(environment_prepare(rgb, W, H, &(env_options){.path = "test", .up_z = true, .scale = 1.0, .threads = 1}, &env, &log,
                                  &e),
              &e);
-        must(env_choices_make(&env, &c, &e), &e);
+        must(env_alias_table_make(&env, &c, &e), &e);
         static double chance[W * H];
         memset(chance, 0, sizeof chance);
         for (int i = 0; i < W * H; i++) {
@@ -231,7 +231,7 @@ static void choices_follow_the_light(void **state)
         }
         assert_near(sum, 1.0, 1e-5);
         if (!black) assert_true(chance[9 * W + 20] > 0.45); // 9/16 of its light, the rest is found beside it
-        env_choices_free(&c);
+        env_alias_table_free(&c);
         environment_free(&env);
     }
     log_free(&log);
@@ -411,9 +411,12 @@ int main(void)
 {
     find_modules();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(corner_is_the_closed_form), cmocka_unit_test(foreign_mesh_is_refused),
-        cmocka_unit_test(missing_module_is_named),   cmocka_unit_test(nothing_becomes_nan),
-        cmocka_unit_test(choices_follow_the_light),  cmocka_unit_test(back_ends_agree),
+        cmocka_unit_test(corner_is_the_closed_form),
+        cmocka_unit_test(foreign_mesh_is_refused),
+        cmocka_unit_test(missing_module_is_named),
+        cmocka_unit_test(nothing_becomes_nan),
+        cmocka_unit_test(alias_table_follows_the_light),
+        cmocka_unit_test(back_ends_agree),
         cmocka_unit_test(box_is_blenders),
     };
     return cmocka_run_group_tests_name("raytrace", tests, NULL, NULL);

@@ -144,23 +144,23 @@ static void roughness_brings_specular(void **state)
     scene_clutter(&s);
     view v = view_perspective(WIDTH, HEIGHT, 50.0, 1.0);
     view_scene(&v, &s);
-    exr_file *f = scene_file(&s, &v, &(scene_exr_options){.convention = "plain"}, &e);
+    exrio_file *f = scene_file(&s, &v, &(scene_exr_options){.convention = "plain"}, &e);
     must(f != NULL, &e);
-    const exr_part *from = &f->parts[0];
+    const exrio_part *from = &f->parts[0];
     static float roughness[WIDTH * HEIGHT];
     for (int i = 0; i < WIDTH * HEIGHT; i++) roughness[i] = 0.4f;
-    exr_out_channel channels[32];
+    exrio_out_channel channels[32];
     int n = 0;
     for (; n < from->channel_count; n++)
-        channels[n] = (exr_out_channel){from->channels[n].name, from->channels[n].type, from->channels[n].data};
-    channels[n++] = (exr_out_channel){"roughness", SAMPLE_FLOAT, roughness};
-    exr_out_part part = {.data_window = from->data_window,
-                         .display_window = from->display_window,
-                         .pixel_aspect = from->pixel_aspect,
-                         .channels = channels,
-                         .channel_count = n};
+        channels[n] = (exrio_out_channel){from->channels[n].name, from->channels[n].type, from->channels[n].data};
+    channels[n++] = (exrio_out_channel){"roughness", SAMPLE_FLOAT, roughness};
+    exrio_out_part part = {.data_window = from->data_window,
+                           .display_window = from->display_window,
+                           .pixel_aspect = from->pixel_aspect,
+                           .channels = channels,
+                           .channel_count = n};
     path_of("rough.exr", path);
-    must(exr_write(path, &part, 1, 1, &e), &e);
+    must(exrio_write(path, &part, 1, 1, &e), &e);
     scene_file_free(f);
     json_object *r = report_for(path, NULL, SKY);
     assert_true(runs(r, "specular"));

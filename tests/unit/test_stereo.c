@@ -67,38 +67,38 @@ static int tear_down(void **state)
 static void write_stereo(const char *path, bool part_per_layer)
 {
     static const char *const layers[GROUPS] = {"", "P.", "N.", "depth.", "albedo."};
-    static exr_out_channel channels[EYES * GROUPS][16];
+    static exrio_out_channel channels[EYES * GROUPS][16];
     static char names[EYES * GROUPS][32];
-    exr_out_part parts[EYES * GROUPS] = {0};
-    exr_file *files[EYES];
+    exrio_out_part parts[EYES * GROUPS] = {0};
+    exrio_file *files[EYES];
     error e = {0};
     int n = 0;
     for (int i = 0; i < EYES; i++) {
-        must(exr_file_open(mono[i], &files[i], &e), &e);
-        exr_part *from = &files[i]->parts[0];
+        must(exrio_file_open(mono[i], &files[i], &e), &e);
+        exrio_part *from = &files[i]->parts[0];
         for (int c = 0; c < from->channel_count; c++) from->channels[c].wanted = true;
-        must(exr_file_load(files[i], 1, &e), &e);
+        must(exrio_file_load(files[i], 1, &e), &e);
         for (int g = 0; g < (part_per_layer ? GROUPS : 1); g++, n++) {
             snprintf(names[n], sizeof names[n], "%s%s", part_per_layer ? g ? layers[g] : "rgba." : "", eyes[i]);
-            parts[n] = (exr_out_part){.name = names[n],
-                                      .view = eyes[i],
-                                      .data_window = from->data_window,
-                                      .display_window = from->display_window,
-                                      .pixel_aspect = 1,
-                                      .compression = 3,
-                                      .channels = channels[n]};
+            parts[n] = (exrio_out_part){.name = names[n],
+                                        .view = eyes[i],
+                                        .data_window = from->data_window,
+                                        .display_window = from->display_window,
+                                        .pixel_aspect = 1,
+                                        .compression = 3,
+                                        .channels = channels[n]};
             for (int c = 0; c < from->channel_count; c++) {
-                const exr_channel *ch = &from->channels[c];
+                const exrio_channel *ch = &from->channels[c];
                 bool in = g ? strncmp(ch->name, layers[g], strlen(layers[g])) == 0 : !strchr(ch->name, '.');
                 if (!in && part_per_layer) continue;
                 // Within a part of its own, the layer's name is the part's.
                 const char *name = part_per_layer && g ? ch->name + strlen(layers[g]) : ch->name;
-                channels[n][parts[n].channel_count++] = (exr_out_channel){name, ch->type, ch->data};
+                channels[n][parts[n].channel_count++] = (exrio_out_channel){name, ch->type, ch->data};
             }
         }
     }
-    must(exr_write(path, parts, n, 1, &e), &e);
-    for (int i = 0; i < EYES; i++) exr_file_close(files[i]);
+    must(exrio_write(path, parts, n, 1, &e), &e);
+    for (int i = 0; i < EYES; i++) exrio_file_close(files[i]);
 }
 
 // How names tell the eyes apart: P.left.X and P.right.X; the left one without its name, P.X; in front, left.P.X and right.P.X. R
@@ -108,20 +108,20 @@ typedef enum naming { BEFORE_COMPONENT, LEFT_BARE, IN_FRONT, NAMINGS } naming;
 // Both eyes in one part.
 static void write_names(const char *path, naming how)
 {
-    exr_out_channel channels[EYES * 16];
+    exrio_out_channel channels[EYES * 16];
     static char names[EYES * 16][64];
-    exr_out_attr multi = {.name = "multiView", .kind = EXR_OUT_STRINGS, .strings = {"left", "right"}, .string_count = EYES};
-    exr_out_part part = {.pixel_aspect = 1, .compression = 3, .channels = channels, .attributes = &multi, .attribute_count = 1};
-    exr_file *files[EYES];
+    exrio_out_attr multi = {.name = "multiView", .kind = EXRIO_OUT_STRINGS, .strings = {"left", "right"}, .string_count = EYES};
+    exrio_out_part part = {.pixel_aspect = 1, .compression = 3, .channels = channels, .attributes = &multi, .attribute_count = 1};
+    exrio_file *files[EYES];
     error e = {0};
     for (int i = 0; i < EYES; i++) {
-        must(exr_file_open(mono[i], &files[i], &e), &e);
-        exr_part *from = &files[i]->parts[0];
+        must(exrio_file_open(mono[i], &files[i], &e), &e);
+        exrio_part *from = &files[i]->parts[0];
         part.data_window = from->data_window, part.display_window = from->display_window;
         for (int c = 0; c < from->channel_count; c++) from->channels[c].wanted = true;
-        must(exr_file_load(files[i], 1, &e), &e);
+        must(exrio_file_load(files[i], 1, &e), &e);
         for (int c = 0; c < from->channel_count; c++) {
-            const exr_channel *ch = &from->channels[c];
+            const exrio_channel *ch = &from->channels[c];
             const char *dot = strrchr(ch->name, '.');
             char *name = names[part.channel_count];
             if (i == 0 && (how == LEFT_BARE || !dot))
@@ -131,11 +131,11 @@ static void write_names(const char *path, naming how)
             else
                 snprintf(name, sizeof *names, "%.*s%s.%s", dot ? (int)(dot + 1 - ch->name) : 0, ch->name, eyes[i],
                          dot ? dot + 1 : ch->name);
-            channels[part.channel_count++] = (exr_out_channel){name, ch->type, ch->data};
+            channels[part.channel_count++] = (exrio_out_channel){name, ch->type, ch->data};
         }
     }
-    must(exr_write(path, &part, 1, 1, &e), &e);
-    for (int i = 0; i < EYES; i++) exr_file_close(files[i]);
+    must(exrio_write(path, &part, 1, 1, &e), &e);
+    for (int i = 0; i < EYES; i++) exrio_file_close(files[i]);
 }
 
 static void same_layers(const frame_result *a, const frame_result *b)
@@ -147,7 +147,7 @@ static void same_layers(const frame_result *a, const frame_result *b)
     }
 }
 
-static int channel_count(const exr_file *f, const char *eye, const char *name)
+static int channel_count(const exrio_file *f, const char *eye, const char *name)
 {
     int n = 0;
     for (int p = 0; p < f->part_count; p++)
@@ -196,19 +196,19 @@ static void check(bool part_per_layer, bool multipart, int parts)
 {
     char in[300], out[300];
     error e = {0};
-    exr_file *f;
+    exrio_file *f;
     snprintf(in, sizeof in, "%s/stereo.exr", folder);
     snprintf(out, sizeof out, "%s/out.exr", folder);
     write_stereo(in, part_per_layer);
     settings.multipart = multipart;
     filter_both(in, out);
-    must(exr_file_open(out, &f, &e), &e);
+    must(exrio_file_open(out, &f, &e), &e);
     assert_int_equal(f->part_count, parts);
     for (int i = 0; i < EYES; i++) {
         const char *want[] = {"occlusion.R", "radiance.G", "indirect.B", "composite.R", "composite.A", "R"};
         for (int k = 0; k < 6; k++) assert_int_equal(channel_count(f, eyes[i], want[k]), part_per_layer && k == 5 ? 2 : 1);
     }
-    exr_file_close(f);
+    exrio_file_close(f);
 }
 
 static void a_part_per_eye(void **state)
@@ -230,7 +230,7 @@ static void one_eye_of_two(void **state)
     char in[300], out[300];
     error e = {0};
     frame_result r;
-    exr_file *f;
+    exrio_file *f;
     (void)state;
     snprintf(in, sizeof in, "%s/stereo.exr", folder);
     snprintf(out, sizeof out, "%s/out.exr", folder);
@@ -240,17 +240,17 @@ static void one_eye_of_two(void **state)
     must(frame_run(&work, in, out, &r, &e), &e);
     assert_null(r.next_view);
     frame_free(&r);
-    must(exr_file_open(out, &f, &e), &e);
+    must(exrio_file_open(out, &f, &e), &e);
     assert_int_equal(f->part_count, 2);
     assert_string_equal(f->parts[0].view, "left");
     assert_int_equal(channel_count(f, "right", "occlusion.R"), 1);
     assert_int_equal(channel_count(f, "left", "occlusion.R"), 0);
     assert_int_equal(channel_count(f, "left", "P.X"), 1);
-    exr_file_close(f);
+    exrio_file_close(f);
     settings.view_layer = NULL;
 }
 
-static int has(const exr_file *f, const char *name) { return channel_count(f, "", name); }
+static int has(const exrio_file *f, const char *name) { return channel_count(f, "", name); }
 
 // The views are in the names: so are ours, in the one part, by OpenEXR's rule. A second run replaces them.
 static void views_in_names(void **state)
@@ -260,7 +260,7 @@ static void views_in_names(void **state)
     char in[300], out[300], again[300];
     const char *text;
     error e = {0};
-    exr_file *f;
+    exrio_file *f;
     (void)state;
     snprintf(in, sizeof in, "%s/names.exr", folder);
     snprintf(out, sizeof out, "%s/out.exr", folder);
@@ -271,7 +271,7 @@ static void views_in_names(void **state)
         write_names(in, how);
         filter_both(in, out);
         filter_both(out, again);
-        must(exr_file_open(again, &f, &e), &e);
+        must(exrio_file_open(again, &f, &e), &e);
         assert_int_equal(f->part_count, 1);
         assert_string_equal(f->parts[0].view, "");
         assert_int_equal(f->parts[0].view_count, EYES);
@@ -279,8 +279,8 @@ static void views_in_names(void **state)
         for (size_t i = 0; i < sizeof want / sizeof *want; i++) assert_int_equal(has(f, want[i]), 1);
         assert_int_equal(has(f, left_x[how]), 1);
         assert_int_equal(has(f, how == IN_FRONT ? "right.P.X" : "P.right.X"), 1);
-        assert_true(exr_attr_string(f, 0, "ssdo/camera", &text) && exr_attr_string(f, 0, "ssdo/camera.right", &text));
-        exr_file_close(f);
+        assert_true(exrio_attr_string(f, 0, "ssdo/camera", &text) && exrio_attr_string(f, 0, "ssdo/camera.right", &text));
+        exrio_file_close(f);
     }
 }
 
@@ -290,27 +290,27 @@ static void views_in_names_otherwise(void **state)
     char in[300], out[300];
     error e = {0};
     frame_result r;
-    exr_file *f;
+    exrio_file *f;
     (void)state;
     snprintf(in, sizeof in, "%s/names.exr", folder);
     snprintf(out, sizeof out, "%s/out.exr", folder);
     write_names(in, BEFORE_COMPONENT);
     settings.multipart = true;
     filter_both(in, out);
-    must(exr_file_open(out, &f, &e), &e);
+    must(exrio_file_open(out, &f, &e), &e);
     assert_int_equal(f->part_count, 2);
     assert_string_equal(f->parts[1].name, "ssdo");
     assert_int_equal(f->parts[1].view_count, EYES);
     assert_int_equal(has(f, "occlusion.right.R"), 1);
-    exr_file_close(f);
+    exrio_file_close(f);
     settings.multipart = false;
 
     settings.main_composite = settings.keep_none = true;
     filter_both(in, out);
-    must(exr_file_open(out, &f, &e), &e);
+    must(exrio_file_open(out, &f, &e), &e);
     assert_int_equal(f->parts[0].channel_count, EYES * (11 + 4));
     assert_int_equal(has(f, "R") + has(f, "A") + has(f, "right.R") + has(f, "right.A"), 4);
-    exr_file_close(f);
+    exrio_file_close(f);
     settings.main_composite = settings.keep_none = false;
 
     settings.view_layer = "right";
@@ -318,11 +318,11 @@ static void views_in_names_otherwise(void **state)
     assert_null(r.next_view);
     assert_string_equal(r.view, "right");
     frame_free(&r);
-    must(exr_file_open(out, &f, &e), &e);
+    must(exrio_file_open(out, &f, &e), &e);
     assert_int_equal(has(f, "occlusion.right.R"), 1);
     assert_int_equal(has(f, "occlusion.left.R"), 0);
     assert_int_equal(has(f, "P.left.X"), 1);
-    exr_file_close(f);
+    exrio_file_close(f);
     settings.view_layer = NULL;
 }
 

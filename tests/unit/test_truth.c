@@ -237,9 +237,9 @@ static void exr_files_hold_the_picture_and_the_background(void **state)
     view v = view_perspective(40, 30, 60.0, 1.0);
     view_look(&v, v3(0, -3, 0.5), v3(0, 0, 0.6), 0.0);
     error e = {0};
-    exr_file *f = scene_file(&s, &v, &(scene_exr_options){.convention = "blender", .edge_samples = 4}, &e);
+    exrio_file *f = scene_file(&s, &v, &(scene_exr_options){.convention = "blender", .edge_samples = 4}, &e);
     assert_non_null(f);
-    const exr_part *part = &f->parts[0];
+    const exrio_part *part = &f->parts[0];
     assert_int_equal(part->channel_count, 14);
     assert_string_equal(part->channels[0].name, "ViewLayer.Position.X");
     assert_string_equal(part->channels[13].name, "ViewLayer.Depth.Z");
@@ -269,20 +269,20 @@ static void written_files_read_back(void **state)
     error e = {0};
     scene_exr_options o = {.convention = "plain", .half_position = true, .no_beauty = true, .radial_depth = true};
     if (!scene_write(&s, &v, &o, path, &e)) fail_msg("%s", e.message);
-    exr_file *wanted = scene_file(&s, &v, &o, &e), *got;
-    assert_true(exr_file_open(path, &got, &e));
+    exrio_file *wanted = scene_file(&s, &v, &o, &e), *got;
+    assert_true(exrio_file_open(path, &got, &e));
     for (int c = 0; c < got->parts[0].channel_count; c++) got->parts[0].channels[c].wanted = true;
-    assert_true(exr_file_load(got, 1, &e));
+    assert_true(exrio_file_load(got, 1, &e));
     assert_true(box2_equal(got->parts[0].data_window, v.data_window));
     assert_true(box2_equal(got->parts[0].display_window, v.display_window));
     assert_int_equal(got->parts[0].channel_count, 10);
     for (int c = 0; c < 10; c++) {
-        const exr_channel *a = &wanted->parts[0].channels[c], *b = got->parts[0].channels;
+        const exrio_channel *a = &wanted->parts[0].channels[c], *b = got->parts[0].channels;
         while (strcmp(a->name, b->name)) b++;
         assert_int_equal(a->type, b->type);
         assert_memory_equal(a->data, b->data, 28 * 14 * sample_size(a->type));
     }
-    exr_file_close(got);
+    exrio_file_close(got);
     scene_file_free(wanted);
     unlink(path);
 }

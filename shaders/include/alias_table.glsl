@@ -1,35 +1,35 @@
 // Light from the environment by two strategies, weighted by the balance heuristic (Veach and Guibas 1995): directions by cosine,
-// and directions by brightness, from the table of src/light/choices.h. Both estimate (1 / pi) integral L V cos, and with
+// and directions by brightness, from the table of src/light/alias_table.h. Both estimate (1 / pi) integral L V cos, and with
 // p = cos / pi and q the table's density their weighted terms are
 //   by cosine       L p / (p + q)
 //   by brightness   L (cos / pi) / (p + q)
 // which is the same expression. The white environment needs the first only: q = 0.
 
-struct Choice {
+struct AliasEntry {
     float keep;
     uint other;
     float density;
 };
-layout(std430) readonly buffer Choices { Choice choices[]; };
+layout(std430) readonly buffer AliasTable { AliasEntry alias_table[]; };
 
-bool has_choices() { return params.choices.x > 0; }
+bool has_alias_table() { return params.alias_table.x > 0; }
 
 float density_of(vec3 direction) {
-    if (!has_choices()) return 0.0;
-    ivec2 size = params.choices.xy;
+    if (!has_alias_table()) return 0.0;
+    ivec2 size = params.alias_table.xy;
     vec2 uv = map_uv(direction);
     ivec2 at = clamp(ivec2(fract(uv) * vec2(size)), ivec2(0), size - 1);
-    return choices[at.y * size.x + at.x].density;
+    return alias_table[at.y * size.x + at.x].density;
 }
 
-// A map-space direction by brightness. Only if has_choices().
+// A map-space direction by brightness. Only if has_alias_table().
 vec3 choose_direction(uvec3 u) {
-    uint n = uint(params.choices.x * params.choices.y), at, rest;
+    uint n = uint(params.alias_table.x * params.alias_table.y), at, rest;
     umulExtended(u.x, n, at, rest);
-    if (unit_of(rest) >= choices[at].keep) at = choices[at].other;
-    uint width = uint(params.choices.x);
+    if (unit_of(rest) >= alias_table[at].keep) at = alias_table[at].other;
+    uint width = uint(params.alias_table.x);
     float azimuth = 2.0 * PI * (0.5 - (float(at % width) + unit_of(u.y)) / float(width));
-    float row = PI / float(params.choices.y), top = float(at / width) * row;
+    float row = PI / float(params.alias_table.y), top = float(at / width) * row;
     // Uniform in solid angle: in the cosine, taken as a difference of angles, which loses nothing at the poles.
     float polar = acos(clamp(mix(cos(top), cos(top + row), unit_of(u.z)), -1.0, 1.0));
     return vec3(sin(polar) * cos(azimuth), sin(polar) * sin(azimuth), cos(polar));

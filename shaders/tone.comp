@@ -3,7 +3,7 @@
 // after the filter, which acts on linear quantities (README, correction 9). Scale and contrast 1 only bound the value.
 #include "include/frame.glsl"
 
-#include "params/look.glsl"
+#include "params/tone.glsl"
 layout(r32f) uniform image2D scalar_image;
 
 void main() {

@@ -1,4 +1,4 @@
-#include "pipeline/sheet.h"
+#include "pipeline/canvas.h"
 
 #include <ctype.h>
 #include <stdlib.h>
@@ -35,41 +35,41 @@ static const unsigned char font[128][GLYPH_H] = {
     ['+'] = {0x00, 0x04, 0x04, 0x1f, 0x04, 0x04, 0x00},
 };
 
-bool sheet_make(sheet *s, int width, int height, uint8_t grey, error *e)
+bool canvas_make(canvas *s, int width, int height, uint8_t grey, error *e)
 {
-    *s = (sheet){.width = width, .height = height};
+    *s = (canvas){.width = width, .height = height};
     s->rgb = mem_zero((size_t)width * (size_t)height, 3, e);
     if (s->rgb) memset(s->rgb, grey, 3 * (size_t)width * (size_t)height);
     return s->rgb != NULL;
 }
 
-void sheet_free(sheet *s)
+void canvas_free(canvas *s)
 {
     free(s->rgb);
-    *s = (sheet){0};
+    *s = (canvas){0};
 }
 
-void sheet_put(sheet *s, int x, int y, const uint8_t colour[3])
+void canvas_put(canvas *s, int x, int y, const uint8_t colour[3])
 {
     if (x >= 0 && y >= 0 && x < s->width && y < s->height)
         memcpy(s->rgb + 3 * ((size_t)y * (size_t)s->width + (size_t)x), colour, 3);
 }
 
-void sheet_fill(sheet *s, int x, int y, int width, int height, const uint8_t colour[3])
+void canvas_fill(canvas *s, int x, int y, int width, int height, const uint8_t colour[3])
 {
     for (int r = 0; r < height; r++)
-        for (int c = 0; c < width; c++) sheet_put(s, x + c, y + r, colour);
+        for (int c = 0; c < width; c++) canvas_put(s, x + c, y + r, colour);
 }
 
-void sheet_text(sheet *s, int x, int y, const char *text)
+void canvas_text(canvas *s, int x, int y, const char *text)
 {
     static const uint8_t ink[3] = {235, 235, 235};
-    for (; *text; text++, x += SHEET_LETTER) {
+    for (; *text; text++, x += CANVAS_LETTER) {
         const unsigned char *rows = font[tolower(*text & 127)];
         for (int r = 0; r < GLYPH_H; r++)
             for (int c = 0; c < GLYPH_W; c++)
-                if (rows[r] >> (GLYPH_W - 1 - c) & 1) sheet_fill(s, x + c * ZOOM, y + r * ZOOM, ZOOM, ZOOM, ink);
+                if (rows[r] >> (GLYPH_W - 1 - c) & 1) canvas_fill(s, x + c * ZOOM, y + r * ZOOM, ZOOM, ZOOM, ink);
     }
 }
 
-uint8_t sheet_checker(int x, int y) { return (x / SQUARE + y / SQUARE) & 1 ? 72 : 104; }
+uint8_t canvas_checker(int x, int y) { return (x / SQUARE + y / SQUARE) & 1 ? 72 : 104; }

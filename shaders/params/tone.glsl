@@ -1,5 +1,5 @@
-PARAMS(look_params) {
+PARAMS(tone_params) {
     float scale;
     float contrast;
     int unused0, unused1;
-} END_PARAMS(look_params)
+} END_PARAMS(tone_params)

@@ -1,19 +1,22 @@
-#include "pipeline/shot.h"
+#include "pipeline/sequence_report.h"
 
 #include <stdlib.h>
 
 #include "pipeline/json.h"
 #include "pipeline/report.h"
 
-void shot_begin(shot_report *s) { *s = (shot_report){.frames = json_object_new_array(), .since = stopwatch_start()}; }
-
-void shot_free(shot_report *s)
+void sequence_report_begin(sequence_report *s)
 {
-    json_object_put(s->frames);
-    *s = (shot_report){0};
+    *s = (sequence_report){.frames = json_object_new_array(), .since = stopwatch_start()};
 }
 
-static void add_result(shot_report *s, json_object *o, const frame_result *r)
+void sequence_report_free(sequence_report *s)
+{
+    json_object_put(s->frames);
+    *s = (sequence_report){0};
+}
+
+static void add_result(sequence_report *s, json_object *o, const frame_result *r)
 {
     double pixels = (double)r->gb.width * r->gb.height;
     json_put_number(o, "radius", r->set.radius);
@@ -28,7 +31,7 @@ static void add_result(shot_report *s, json_object *o, const frame_result *r)
     }
 }
 
-void shot_add(shot_report *s, const shot_frame *f)
+void sequence_report_add(sequence_report *s, const sequence_frame *f)
 {
     if (!s->frames) return;
     char text[ERROR_TEXT];
@@ -51,20 +54,20 @@ void shot_add(shot_report *s, const shot_frame *f)
 }
 
 // What bounds the sequence: the thread that is busy nearly all the time, or, where `cores` is near the machine's, the CPU.
-static json_object *busy_of(const shot_report *s)
+static json_object *busy_of(const sequence_report *s)
 {
-    static const char *const names[SHOT_THREADS] = {"read", "gpu", "write"};
+    static const char *const names[SEQUENCE_THREADS] = {"read", "gpu", "write"};
     double wall = 0.0, cpu = 0.0;
     stopwatch t = s->since;
     stopwatch_add(&t, &wall, &cpu);
     json_object *o = json_object_new_object();
-    for (int i = 0; i < SHOT_THREADS; i++) json_put_number(o, names[i], wall > 0.0 ? s->busy_ms[i] / wall : 0.0);
+    for (int i = 0; i < SEQUENCE_THREADS; i++) json_put_number(o, names[i], wall > 0.0 ? s->busy_ms[i] / wall : 0.0);
     json_put_number(o, "cores", wall > 0.0 ? cpu / wall : 0.0);
     json_put_number(o, "wall_ms", wall);
     return o;
 }
 
-bool shot_write(shot_report *s, const job *j, const frame_list *failures, const char *path, error *e)
+bool sequence_report_write(sequence_report *s, const job *j, const frame_list *failures, const char *path, error *e)
 {
     char failed[512], *args = options_record(j->o, e);
     if (!args) return false;
@@ -75,7 +78,7 @@ bool shot_write(shot_report *s, const job *j, const frame_list *failures, const 
     if (j->g.software) json_put_text(o, "why_software", j->g.why_software);
     json_put_text(o, "args", args);
     free(args);
-    if (j->shot_radius > 0.0) json_put_number(o, "radius", j->shot_radius);
+    if (j->sequence_radius > 0.0) json_put_number(o, "radius", j->sequence_radius);
     json_put(o, "done", json_object_new_int(s->done));
     json_put(o, "skipped", json_object_new_int(s->skipped));
     json_put(o, "failed", json_object_new_int(s->failed));

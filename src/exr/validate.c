@@ -29,7 +29,7 @@ typedef struct walker {
 } walker;
 
 typedef struct attribute {
-    char name[EXR_MAX_NAME + 1], type[EXR_MAX_NAME + 1];
+    char name[EXRIO_MAX_NAME + 1], type[EXRIO_MAX_NAME + 1];
     uint32_t size;
 } attribute;
 
@@ -89,9 +89,9 @@ static bool take_int(walker *w, uint32_t *v)
     return true;
 }
 
-static bool take_name(walker *w, char name[EXR_MAX_NAME + 1])
+static bool take_name(walker *w, char name[EXRIO_MAX_NAME + 1])
 {
-    for (int i = 0; i <= EXR_MAX_NAME; i++) {
+    for (int i = 0; i <= EXRIO_MAX_NAME; i++) {
         if (!take(w, &name[i], 1)) return false;
         if (!name[i]) return true;
     }
@@ -109,13 +109,13 @@ static bool skip(walker *w, uint64_t n)
 static bool check_channels(walker *w, uint32_t size)
 {
     uint64_t end = w->at + size;
-    char name[EXR_MAX_NAME + 1];
+    char name[EXRIO_MAX_NAME + 1];
     uint8_t rest[16];
     for (int i = 0; w->at < end; i++) {
         if (!take_name(w, name)) return false;
         if (!name[0]) break;
-        if (i >= EXR_MAX_CHANNELS)
-            return err_set(w->e, ERR_INPUT, w->path, NULL, "has more than %d channels in one part; split it", EXR_MAX_CHANNELS);
+        if (i >= EXRIO_MAX_CHANNELS)
+            return err_set(w->e, ERR_INPUT, w->path, NULL, "has more than %d channels in one part; split it", EXRIO_MAX_CHANNELS);
         if (!take(w, rest, sizeof rest)) return false;
     }
     return w->at == end || fail(w, "is damaged: its channel list does not have the size it claims");
@@ -186,7 +186,7 @@ static bool check_part(walker *w, bool *empty, bool *deep)
         if (!take_name(w, a.name)) return false;
         *empty = count == 0;
         if (!a.name[0]) break;
-        if (count >= EXR_MAX_ATTRIBUTES) return fail(w, "is damaged: a part has more attributes than any program writes");
+        if (count >= EXRIO_MAX_ATTRIBUTES) return fail(w, "is damaged: a part has more attributes than any program writes");
         if (!check_attribute(w, &a, &seen, deep)) return false;
     }
     for (unsigned i = 0; !*empty && i < REQUIRED; i++)
@@ -201,13 +201,13 @@ static bool check_parts(walker *w, uint32_t flags)
     bool empty, deep, flat = false;
     w->multipart = flags & FLAG_MULTIPART;
     if (!w->multipart) return check_part(w, &empty, &deep) && (!empty || fail(w, "is damaged: its header is empty"));
-    for (int count = 0; count <= EXR_MAX_PARTS; count++) {
+    for (int count = 0; count <= EXRIO_MAX_PARTS; count++) {
         if (!check_part(w, &empty, &deep)) return false;
         if (empty && count > 0 && !flat) return refuse_deep(w);
         if (empty) return count > 0 || fail(w, "is damaged: it has no parts");
         flat = flat || !deep;
     }
-    return err_set(w->e, ERR_INPUT, w->path, NULL, "has more than %d parts; split it", EXR_MAX_PARTS);
+    return err_set(w->e, ERR_INPUT, w->path, NULL, "has more than %d parts; split it", EXRIO_MAX_PARTS);
 }
 
 static bool check_stream(walker *w)
@@ -222,7 +222,7 @@ static bool check_stream(walker *w)
     return check_parts(w, flags);
 }
 
-bool exr_check_header(const char *path, int fd, size_t size, uint64_t *end, error *e)
+bool exrio_check_header(const char *path, int fd, size_t size, uint64_t *end, error *e)
 {
     walker w = {.fd = fd, .path = path, .size = size, .e = e};
     bool ok = check_stream(&w);
@@ -231,7 +231,7 @@ bool exr_check_header(const char *path, int fd, size_t size, uint64_t *end, erro
 }
 
 // The table begins with the offset of a chunk, which lies behind it.
-uint64_t exr_head_bytes(const char *path)
+uint64_t exrio_head_bytes(const char *path)
 {
     enum { MOST = 1 << 26 };
     error ignored = {0};

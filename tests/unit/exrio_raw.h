@@ -2,7 +2,7 @@
 #ifndef SSDO_TESTS_EXR_RAW_H
 #define SSDO_TESTS_EXR_RAW_H
 
-#include "exr_support.h"
+#include "exrio_support.h"
 
 typedef struct raw_file {
     uint8_t bytes[16384];

@@ -85,8 +85,8 @@ static inline void *make_samples(sample_type type, size_t count, uint32_t seed, 
 }
 
 typedef struct image {
-    exr_out_channel channels[8];
-    exr_out_part part;
+    exrio_out_channel channels[8];
+    exrio_out_part part;
 } image;
 
 // Unsorted names, all three types, a data window away from the origin.
@@ -97,14 +97,14 @@ static inline void make_image(image *im, int width, int height, int compression,
                                         SAMPLE_HALF,  SAMPLE_HALF, SAMPLE_FLOAT};
     memset(im, 0, sizeof *im);
     for (int i = 0; i < 7; i++)
-        im->channels[i] =
-            (exr_out_channel){names[i], types[i], make_samples(types[i], (size_t)width * (size_t)height, (uint32_t)i + 1, noise)};
-    im->part = (exr_out_part){.data_window = {-3, 5, width - 4, height + 4},
-                              .display_window = {0, 0, 63, 47},
-                              .pixel_aspect = 1.0f,
-                              .compression = compression,
-                              .channels = im->channels,
-                              .channel_count = 7};
+        im->channels[i] = (exrio_out_channel){names[i], types[i],
+                                              make_samples(types[i], (size_t)width * (size_t)height, (uint32_t)i + 1, noise)};
+    im->part = (exrio_out_part){.data_window = {-3, 5, width - 4, height + 4},
+                                .display_window = {0, 0, 63, 47},
+                                .pixel_aspect = 1.0f,
+                                .compression = compression,
+                                .channels = im->channels,
+                                .channel_count = 7};
 }
 
 static inline void free_image(image *im)
@@ -112,32 +112,32 @@ static inline void free_image(image *im)
     for (int i = 0; i < im->part.channel_count; i++) test_free((void *)(uintptr_t)im->channels[i].data);
 }
 
-static inline const exr_channel *find_channel(const exr_part *p, const char *name)
+static inline const exrio_channel *find_channel(const exrio_part *p, const char *name)
 {
     for (int i = 0; i < p->channel_count; i++)
         if (strcmp(p->channels[i].name, name) == 0) return &p->channels[i];
     return NULL;
 }
 
-static inline exr_file *open_all(const char *path, int threads)
+static inline exrio_file *open_all(const char *path, int threads)
 {
     error e = {0};
-    exr_file *f = NULL;
-    assert_ok(exr_file_open(path, &f, &e), e);
+    exrio_file *f = NULL;
+    assert_ok(exrio_file_open(path, &f, &e), e);
     for (int p = 0; p < f->part_count; p++)
         for (int c = 0; c < f->parts[p].channel_count; c++) f->parts[p].channels[c].wanted = true;
-    assert_ok(exr_file_load(f, threads, &e), e);
+    assert_ok(exrio_file_load(f, threads, &e), e);
     return f;
 }
 
 // The part holds exactly the image's channels, bit for bit.
-static inline void assert_same_pixels(const image *im, const exr_part *p)
+static inline void assert_same_pixels(const image *im, const exrio_part *p)
 {
     size_t count = (size_t)box2_width(p->data_window) * (size_t)box2_height(p->data_window);
     assert_int_equal(p->channel_count, im->part.channel_count);
     assert_true(box2_equal(p->data_window, im->part.data_window));
     for (int i = 0; i < im->part.channel_count; i++) {
-        const exr_channel *c = find_channel(p, im->channels[i].name);
+        const exrio_channel *c = find_channel(p, im->channels[i].name);
         assert_non_null(c);
         assert_int_equal(c->type, im->channels[i].type);
         assert_memory_equal(c->data, im->channels[i].data, count * sample_size(c->type));

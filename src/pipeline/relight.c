@@ -1,4 +1,4 @@
-#include "pipeline/stored.h"
+#include "pipeline/relight.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -14,7 +14,7 @@ enum { NAME_SIZE = 128 };
 static int count(const options *o) { return o->sh_bands == 3 ? 16 : 9; }
 
 // Coefficients 0 to 8 are in layers of three, 9 to 15 in one of seven.
-static void name_of(const options *o, const exr_file *file, const char *view, int i, char *name)
+static void name_of(const options *o, const exrio_file *file, const char *view, int i, char *name)
 {
     char plain[NAME_SIZE];
     const layer_info *l = &layer_table[i < 9 ? LAYER_SH_0 + i / 3 : LAYER_SH_3];
@@ -22,7 +22,7 @@ static void name_of(const options *o, const exr_file *file, const char *view, in
     view_name(file, view, plain, name, NAME_SIZE);
 }
 
-static exr_channel *find(const exr_file *file, const char *view, const char *name, const exr_part **part)
+static exrio_channel *find(const exrio_file *file, const char *view, const char *name, const exrio_part **part)
 {
     for (int p = 0; p < file->part_count; p++)
         for (int c = 0; c < file->parts[p].channel_count; c++)
@@ -33,13 +33,13 @@ static exr_channel *find(const exr_file *file, const char *view, const char *nam
     return NULL;
 }
 
-bool stored_sh_want(const options *o, exr_file *file, const char *view, error *e)
+bool relight_want(const options *o, exrio_file *file, const char *view, error *e)
 {
-    const exr_part *part;
+    const exrio_part *part;
     for (int i = 0; i < count(o); i++) {
         char name[NAME_SIZE];
         name_of(o, file, view, i, name);
-        exr_channel *channel = find(file, view, name, &part);
+        exrio_channel *channel = find(file, view, name, &part);
         if (!channel)
             return err_set(e, ERR_INPUT, file->path, name,
                            "--from-sh needs the layers that --method s3ho --layers sh_0,sh_1,sh_2 (and sh_3 with --sh-bands 3) "
@@ -49,7 +49,7 @@ bool stored_sh_want(const options *o, exr_file *file, const char *view, error *e
     return true;
 }
 
-static float sample_at(const exr_channel *c, size_t i)
+static float sample_at(const exrio_channel *c, size_t i)
 {
     float v = c->type == SAMPLE_HALF    ? half_to_float(((const uint16_t *)c->data)[i])
               : c->type == SAMPLE_FLOAT ? ((const float *)c->data)[i]
@@ -57,14 +57,14 @@ static float sample_at(const exr_channel *c, size_t i)
     return isfinite(v) ? v : 0.0f;
 }
 
-bool stored_sh_load(const options *o, const exr_file *file, const char *view, const gbuffer *gb, float *out[5], error *e)
+bool relight_load(const options *o, const exrio_file *file, const char *view, const gbuffer *gb, float *out[5], error *e)
 {
     size_t n = (size_t)gb->width * (size_t)gb->height;
     for (int i = 0; i < count(o); i++) {
         char name[NAME_SIZE];
         name_of(o, file, view, i, name);
-        const exr_part *part = NULL;
-        const exr_channel *channel = find(file, view, name, &part);
+        const exrio_part *part = NULL;
+        const exrio_channel *channel = find(file, view, name, &part);
         if (!channel || !channel->data || !box2_equal(part->data_window, gb->data_window))
             return err_set(e, ERR_INPUT, file->path, name,
                            "this stored layer has another data window than the picture's surfaces");

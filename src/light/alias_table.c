@@ -1,4 +1,4 @@
-#include "light/choices.h"
+#include "light/alias_table.h"
 
 #include <stdlib.h>
 
@@ -45,7 +45,7 @@ static void share_out(env_choice *table, double *weight, uint32_t *small, uint32
     while (smalls) table[small[--smalls]].keep = 1.0f; // rounding
 }
 
-bool env_choices_make(const environment *env, env_choices *out, error *e)
+bool env_alias_table_make(const environment *env, env_alias_table *out, error *e)
 {
     int k = 0;
     while (k + 1 < env->level_count && (int64_t)env->levels[k].width * env->levels[k].height > ENV_MAX_CHOICES) k++;
@@ -54,7 +54,7 @@ bool env_choices_make(const environment *env, env_choices *out, error *e)
     bool ok = false;
     double *weight = mem_pixels(n, sizeof *weight, e), total = 0.0;
     uint32_t *small = mem_pixels(n, sizeof *small, e), *large = mem_pixels(n, sizeof *large, e);
-    *out = (env_choices){l->width, l->height, mem_zero(n, sizeof *out->table, e)};
+    *out = (env_alias_table){l->width, l->height, mem_zero(n, sizeof *out->table, e)};
     if (!weight || !small || !large || !out->table) goto out;
     for (int pass = 0; pass < 2 && !(total > 0.0); pass++)
         for (size_t i = 0; i < n; i++) {
@@ -73,12 +73,12 @@ out:
     free(weight);
     free(small);
     free(large);
-    if (!ok) env_choices_free(out);
+    if (!ok) env_alias_table_free(out);
     return ok;
 }
 
-void env_choices_free(env_choices *c)
+void env_alias_table_free(env_alias_table *c)
 {
     free(c->table);
-    *c = (env_choices){0};
+    *c = (env_alias_table){0};
 }

@@ -48,7 +48,7 @@ static bool march(work *w, const char *what, int round, error *e)
     arc_params params = arc_params_of_grid(c, arc_round_slices(round) - before, arc_round_steps(round));
     params.before = before;
     variant v = arc_variant(c, what);
-    variant_add(&v, true, "CHANGE");
+    variant_add(&v, true, "HALF_DIFFERENCE");
     variant_add(&v, true, "ROUND");
     const pass_call call = {
         .program = "arc",
@@ -57,7 +57,7 @@ static bool march(work *w, const char *what, int round, error *e)
         .tiles = go_to(w, w->active),
         PASS_PARAMS(params),
         .reads = {{"surface_image", &c->surface}, {"planes_image", &c->plane_image}},
-        .writes = {{"scalar_image", &c->occlusion}, {"change_image", &c->change}, {"sums_image", &w->sums}},
+        .writes = {{"scalar_image", &c->occlusion}, {"half_difference_image", &c->half_difference}, {"sums_image", &w->sums}},
     };
     return pass_run(c, &call, e);
 }
@@ -69,7 +69,7 @@ static void grow(work *w)
     for (int i = 0; i < t->columns * t->rows; i++) {
         bool above = i >= t->columns && w->active[i - t->columns],
              below = i < t->columns * (t->rows - 1) && w->active[i + t->columns];
-        w->grown[i] = w->c->rounds.tiles.occupied[i] && (w->active[i] || above || below);
+        w->grown[i] = w->c->adaptive.tiles.occupied[i] && (w->active[i] || above || below);
     }
 }
 
@@ -104,7 +104,7 @@ static bool measure(work *w, error *e)
 // Takes the tiles out that have come below the error, and says whether any is left.
 static bool settle(work *w, int round)
 {
-    pass_rounds *r = &w->c->rounds;
+    adaptive_sampling *r = &w->c->adaptive;
     bool left = false;
     r->above = 0;
     for (int i = 0; i < r->tiles.columns * r->tiles.rows; i++) {
@@ -121,7 +121,7 @@ static bool settle(work *w, int round)
 static bool make_room(work *w, error *e)
 {
     pass_context *c = w->c;
-    pass_rounds *r = &c->rounds;
+    adaptive_sampling *r = &c->adaptive;
     if (!gpu_tiles_make(&r->tiles, c->width, c->height, GPU_TILE, c->gb->depth, c->gb->coverage, e)) return false;
     size_t count = (size_t)r->tiles.columns * (size_t)r->tiles.rows;
     r->last = mem_zero(count, 1, e);
@@ -131,7 +131,7 @@ static bool make_room(work *w, error *e)
     if (!r->last || !w->active || !w->grown || !w->read) return false;
     memcpy(w->active, r->tiles.occupied, count);
     w->tiles = r->tiles;
-    return pass_make(c, &c->occlusion, GL_R32F, 1.0f, e) && pass_make(c, &c->change, GL_R32F, 0.0f, e) &&
+    return pass_make(c, &c->occlusion, GL_R32F, 1.0f, e) && pass_make(c, &c->half_difference, GL_R32F, 0.0f, e) &&
            pass_make(c, &w->sums, GL_RG32F, 0.0f, e) && pass_make(c, &w->moments, GL_RGBA32F, 0.0f, e) &&
            pass_make(c, &w->result, GL_R32F, 1.0f, e) && pass_make(c, &w->square, GL_R32F, 0.0f, e) &&
            gpu_buffer_make(c->g, &w->totals, NULL, count * sizeof *w->read, "the tiles' errors", e);
@@ -156,7 +156,7 @@ static bool conclude(work *w, error *e)
     return pass_blur(c, radius, &w->square, NULL, NULL, e) && pass_make(c, &c->error, GL_R32F, 0.0f, e) && pass_run(c, &call, e);
 }
 
-static void count_samples(pass_rounds *r)
+static void count_samples(adaptive_sampling *r)
 {
     double sum = 0.0;
     r->most_samples = r->count > 0 ? samples_after(r->count - 1) : 0;
@@ -167,7 +167,7 @@ static void count_samples(pass_rounds *r)
 
 static bool stopped(const pass_context *c) { return c->stop && *c->stop; }
 
-bool arc_run_rounds(pass_context *c, const char *what, error *e)
+bool arc_run_adaptive(pass_context *c, const char *what, error *e)
 {
     work w = {.c = c};
     int timings = c->timing_count, round = 0;
@@ -179,8 +179,8 @@ bool arc_run_rounds(pass_context *c, const char *what, error *e)
             ok && settle(&w, round) && round + 1 < ROUNDS_MAX && samples_after(round + 1) <= c->set.most_samples && !stopped(c);
     }
     ok = ok && conclude(&w, e);
-    c->rounds.count = round;
-    if (ok) count_samples(&c->rounds);
+    c->adaptive.count = round;
+    if (ok) count_samples(&c->adaptive);
     c->timing_count = timings;
     pass_clock_stop(c, clock);
     gpu_image *images[] = {&w.sums, &w.moments, &w.result, &w.square};
@@ -192,9 +192,9 @@ bool arc_run_rounds(pass_context *c, const char *what, error *e)
     return ok;
 }
 
-bool arc_run_at_rounds(pass_context *c, const pass_call *call, const arc_params *params, error *e)
+bool arc_run_as_adaptive(pass_context *c, const pass_call *call, const arc_params *params, error *e)
 {
-    const pass_rounds *r = &c->rounds;
+    const adaptive_sampling *r = &c->adaptive;
     arc_params p = *params;
     pass_call part = *call;
     part.params = &p, part.params_size = sizeof p;
