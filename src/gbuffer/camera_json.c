@@ -14,7 +14,7 @@ typedef struct source {
 static bool refuse(const source *s, const char *what) { return err_set(s->e, ERR_USAGE, s->path, NULL, "%s", what); }
 
 // A mirror image of the scene has such axes too; only the determinant tells.
-static bool is_rotation(const double m[4][4])
+static bool is_rotation(double m[4][4])
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j <= i; j++) {

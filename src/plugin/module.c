@@ -58,11 +58,22 @@ static void *open_module(const char *folder, const char *file, char *why, size_t
     return handle;
 }
 
-void *module_function(const module *m, const char *name, const char *purpose, error_code code, const char *file, error *e)
+// dlsym gives the address of an object, which C does not convert to that of a function; POSIX has both of one form.
+static module_call find(void *handle, const char *name)
+{
+    void *object = dlsym(handle, name);
+    module_call function;
+    _Static_assert(sizeof function == sizeof object, "POSIX");
+    memcpy(&function, &object, sizeof function);
+    return function;
+}
+
+module_call module_function(const module *m, const char *name, const char *purpose, error_code code, const char *file, error *e)
 {
     places *p = mem_zero(1, sizeof *p, e);
     if (!p) return NULL;
-    void *handle = NULL, *function = NULL;
+    void *handle = NULL;
+    module_call function = NULL;
     char folders[512] = "", why[256] = "";
     list_places(p);
     for (int i = 0; i < p->count && !handle; i++) {
@@ -70,7 +81,7 @@ void *module_function(const module *m, const char *name, const char *purpose, er
         strncat(folders, p->folder[i], sizeof folders - strlen(folders) - 1);
         handle = open_module(p->folder[i], m->file, why, sizeof why);
     }
-    if (handle) function = dlsym(handle, name);
+    if (handle) function = find(handle, name);
     if (!handle && why[0])
         err_set(e, code, file, NULL, "%s needs the module %s, which cannot be loaded (%s); install %s", purpose, m->file, why,
                 m->library);

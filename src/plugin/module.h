@@ -14,7 +14,10 @@ typedef struct module {
 
 enum { MODULE_MESSAGE = 512 }; // room for a sentence from the other side
 
+// Any function; whoever gets one casts it to the type that it has.
+typedef void (*module_call)(void);
+
 // The function `name` of the module, or NULL after filling *e with what needs it (`purpose`) and where it was looked for.
-void *module_function(const module *m, const char *name, const char *purpose, error_code code, const char *file, error *e);
+module_call module_function(const module *m, const char *name, const char *purpose, error_code code, const char *file, error *e);
 
 #endif

@@ -15,7 +15,7 @@ struct trace_cpu {
     int threads;
 };
 
-static void *function(const char *name, error *e)
+static module_call function(const char *name, error *e)
 {
     return module_function(&tracing, name, "--trace embree", ERR_USAGE, NULL, e);
 }

@@ -143,7 +143,7 @@ static void spheres_send_light(void **state)
     pass_settings set = rig_settings(method_find("arc"), 2.0);
     p.r.options.bounce = "arc";
     run(&p.r, &p.gb, "arc", set, LIGHT | 1 << LAYER_INDIRECT, (proxy_set){&ball, 1}, &out);
-    double got[3] = {0}, truth[3] = {0}, square = 0.0;
+    double got[3] = {0}, truth[3] = {0};
     for (int i = 7; i < 40 * 30; i += 31) {
         truth_options o = {.rays = 900, .bounce_rays = 64, .offset = 1e-5, .seed = 3};
         if (p.gb.depth[i] <= 0.0f) continue;
@@ -151,7 +151,6 @@ static void spheres_send_light(void **state)
         const float *x = out.layers[LAYER_INDIRECT] + 3 * i;
         got[0] += (double)x[0], got[1] += (double)x[1], got[2] += (double)x[2];
         truth[0] += w.x, truth[1] += w.y, truth[2] += w.z;
-        square += ((double)x[0] - w.x) * ((double)x[0] - w.x);
     }
     print_message("bounce of a sphere: %.3f %.3f %.3f of the truth\n", got[0] / truth[0], got[1] / truth[1], got[2] / truth[2]);
     for (int k = 0; k < 3; k++) assert_near(got[k] / truth[k], 1.0, 0.05);
