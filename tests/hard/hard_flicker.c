@@ -28,7 +28,7 @@ static void make_shot(shot *s)
         view v = view_perspective(WIDTH, HEIGHT, 50.0, 1.0);
         view_scene(&v, &s->scene);
         double far = v3_length(v3_sub(s->scene.target, s->scene.eye));
-        const double(*m)[3] = v.camera.world_from_camera.m;
+        double(*m)[3] = v.camera.world_from_camera.m;
         vec3 right = v3(m[0][0], m[1][0], m[2][0]);
         v.camera.origin = v3_add(v.camera.origin, v3_scale(right, f * step * far / v.camera.fx));
         must(scene_gbuffer(&s->scene, &v, &s->gb[f], &e), &e);
