@@ -135,6 +135,7 @@ typedef struct gpu_image {
 
 bool gpu_image_make(gpu *g, gpu_image *image, GLenum format, int width, int height, int levels, error *e);
 void gpu_image_free(gpu_image *image);
+size_t gpu_image_row_bytes(const gpu_image *image); // as floats
 // Whole level from/to tightly packed floats with as many components as the format has.
 void gpu_image_upload(gpu *g, gpu_image *image, int level, const float *pixels);
 void gpu_image_download(gpu *g, const gpu_image *image, float *pixels);

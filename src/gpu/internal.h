@@ -8,7 +8,6 @@ void gpu_programs_free(gpu *g);
 void gpu_debug_begin(gpu *g); // in a context that is current
 void gpu_transfers_free(gpu *g);
 
-size_t gpu_image_row_bytes(const gpu_image *image); // as floats
 // Rows of level 0; with a buffer bound to GL_PIXEL_UNPACK_BUFFER, `pixels` is NULL.
 void gpu_image_upload_rows(gpu *g, gpu_image *image, int y, int rows, const float *pixels);
 

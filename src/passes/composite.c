@@ -56,7 +56,7 @@ bool pass_composite(pass_context *c, error *e)
         .everywhere = true,   // background pixels have a composite too
         .exact = !s->relight, // a beauty comes through to the bit
         PASS_PARAMS(params),
-        .reads = {{"occlusion_image", s->relight && s->visibility_mode ? &c->visibility : &c->occlusion},
+        .reads = {{"occlusion_image", s->relight && s->visibility_mode && c->visibility.id ? &c->visibility : &c->occlusion},
                   {"albedo_image", &c->albedo},
                   {"radiance_image", s->relight ? &c->radiance : &c->diffuse_direct},
                   {"indirect_image", &c->indirect},

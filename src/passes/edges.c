@@ -19,46 +19,22 @@ static bool make_tiles(const pass_context *c, gpu_tiles *tiles, error *e)
     return ok;
 }
 
-// The SH vector has images enough for a run of its own.
-static bool fill_vector(pass_context *c, const gpu_tiles *tiles, error *e)
+static bool fill(pass_context *c, const gpu_tiles *tiles, unsigned group, const char *label, error *e)
 {
-    const pass_call call = {
-        .program = "edges",
-        .label = "edges sh",
-        .variant = c->sh[3].id ? "SH BANDS3" : "SH",
-        .tiles = tiles,
-        .reads = {{"coverage_image", &c->coverage}},
-        .writes = {{"sh0_image", &c->sh[0]},
-                   {"sh1_image", &c->sh[1]},
-                   {"sh2_image", &c->sh[2]},
-                   {"sh3_image", &c->sh[3]},
-                   {"sh4_image", &c->sh[4]}},
-    };
-    return c->sh[0].id == 0 || pass_run(c, &call, e);
+    variant v = {{0}};
+    pass_call call = {.program = "edges",
+                      .label = label,
+                      .variant = v.words,
+                      .tiles = tiles,
+                      .reads = {{"coverage_image", &c->image[IMAGE_COVERAGE]}}};
+    return !pass_add_group(c, group, &v, call.writes) || pass_run(c, &call, e);
 }
 
 bool pass_edges(pass_context *c, error *e)
 {
-    variant v = {{0}};
     gpu_tiles tiles;
-    variant_add(&v, true, "OCCLUSION");
-    variant_add(&v, c->bent.id != 0, "BENT");
-    variant_add(&v, c->visibility.id != 0, "VISIBILITY");
-    variant_add(&v, c->radiance.id != 0, "RADIANCE");
-    variant_add(&v, c->indirect.id != 0, "INDIRECT");
     if (!make_tiles(c, &tiles, e)) return false;
-    const pass_call call = {
-        .program = "edges",
-        .variant = v.words,
-        .tiles = &tiles,
-        .reads = {{"coverage_image", &c->coverage}},
-        .writes = {{"occlusion_image", &c->occlusion},
-                   {"bent_image", &c->bent},
-                   {"visibility_image", &c->visibility},
-                   {"radiance_image", &c->radiance},
-                   {"indirect_image", &c->indirect}},
-    };
-    bool ok = pass_run(c, &call, e) && fill_vector(c, &tiles, e);
+    bool ok = fill(c, &tiles, IMAGE_FILLED, "edges", e) && fill(c, &tiles, IMAGE_VECTOR, "edges sh", e);
     gpu_tiles_free(&tiles);
     return ok;
 }

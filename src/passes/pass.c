@@ -37,36 +37,29 @@ static void fill_block(frame_block *b, const gbuffer *gb, const environment *env
         for (int c = 0; c < 3; c++) b->sh[i][c] = (float)env->sh[i][c];
 }
 
-static bool upload(pass_context *c, const char *name, gpu_image *image, GLenum format, const float *pixels, error *e)
+static const float *pixels_of(const gbuffer *gb, const image_row *row)
 {
-    if (!pixels) return true;
-    if (!gpu_image_make(c->g, image, format, c->width, c->height, 1, e)) return false;
-    if (!gpu_image_send(c->g, image, pixels, e)) return false;
-    size_t components = format == GL_R32F ? 1 : format == GL_RG32F ? 2 : 4;
-    size_t bytes = (size_t)c->width * (size_t)c->height * components * sizeof *pixels;
-    c->uploads[c->upload_count++] = (pass_upload){name, bytes};
+    const float *pixels;
+    memcpy(&pixels, (const char *)gb + row->pixels, sizeof pixels);
+    return pixels;
+}
+
+static bool upload(pass_context *c, image_id id, const float *pixels, error *e)
+{
+    const image_row *row = &image_table[id];
+    gpu_image *image = &c->image[id];
+    if (!gpu_image_make(c->g, image, row->format, c->width, c->height, 1, e) || !gpu_image_send(c->g, image, pixels, e))
+        return false;
+    c->uploads[c->upload_count++] = (pass_upload){row->name, gpu_image_row_bytes(image) * (size_t)c->height};
     return true;
 }
 
-static bool upload_all(pass_context *c, const gbuffer *gb, error *e)
+static bool upload_all(pass_context *c, error *e)
 {
-    const struct {
-        const char *name;
-        gpu_image *image;
-        GLenum format;
-        const float *pixels;
-    } list[] = {
-        {"depth", &c->depth, GL_R32F, gb->depth},
-        {"normal", &c->normal, GL_RGBA32F, gb->normal},
-        {"albedo", &c->albedo, GL_RGBA32F, gb->albedo},
-        {"beauty", &c->beauty, GL_RGBA32F, gb->beauty},
-        {"material", &c->material, GL_RG32F, gb->material},
-        {"emission", &c->emission, GL_RGBA32F, gb->emission},
-        {"diffuse direct", &c->diffuse_direct, GL_RGBA32F, gb->diffuse_direct},
-        {"coverage", &c->coverage, GL_R32F, gb->coverage},
-    };
-    for (size_t i = 0; i < sizeof list / sizeof *list; i++)
-        if (!upload(c, list[i].name, list[i].image, list[i].format, list[i].pixels, e)) return false;
+    for (int i = 0; i < IMAGE_COUNT; i++) {
+        const float *pixels = image_table[i].given ? pixels_of(c->gb, &image_table[i]) : NULL;
+        if (pixels && !upload(c, (image_id)i, pixels, e)) return false;
+    }
     return true;
 }
 
@@ -84,7 +77,7 @@ bool pass_begin(pass_context *c, error *e)
     double wall = now(CLOCK_MONOTONIC), cpu = now(CLOCK_PROCESS_CPUTIME_ID);
     c->width = c->gb->width, c->height = c->gb->height;
     bool ok =
-        upload_all(c, c->gb, e) &&
+        upload_all(c, e) &&
         gpu_tiles_make(&c->tiles, c->width, c->height, gpu_tile_size(c->g, c->set.samples), c->gb->depth, c->gb->coverage, e) &&
         gpu_finish(c->g, "the upload", e);
     if (!ok) {
@@ -128,12 +121,7 @@ pass_context pass_like(const pass_context *c, const gbuffer *gb, const pass_sett
 
 void pass_end(pass_context *c)
 {
-    gpu_image *images[] = {&c->depth,          &c->normal,          &c->albedo,    &c->beauty,     &c->material,  &c->emission,
-                           &c->diffuse_direct, &c->coverage,        &c->occlusion, &c->visibility, &c->radiance,  &c->indirect,
-                           &c->specular,       &c->diffuse_share,   &c->composite, &c->diffuse,    &c->depthmask, &c->bent,
-                           &c->sh[0],          &c->sh[1],           &c->sh[2],     &c->sh[3],      &c->sh[4],     &c->surface,
-                           &c->plane_image,    &c->half_difference, &c->error};
-    for (size_t i = 0; i < sizeof images / sizeof *images; i++) gpu_image_free(images[i]);
+    for (int i = 0; i < IMAGE_COUNT; i++) gpu_image_free(&c->image[i]);
     gpu_uniforms_free(c->frame_uniforms);
     gpu_uniforms_free(c->params_uniforms);
     gpu_tiles_free(&c->tiles);
@@ -141,6 +129,26 @@ void pass_end(pass_context *c)
     free(c->adaptive.last);
     c->adaptive.last = NULL;
     c->frame_uniforms = c->params_uniforms = 0;
+}
+
+bool pass_make_image(pass_context *c, image_id id, error *e)
+{
+    return pass_make(c, &c->image[id], image_table[id].format, image_table[id].neutral, e);
+}
+
+bool pass_add_group(const pass_context *c, unsigned group, variant *words, pass_picture writes[PASS_MOST_WRITES + 1])
+{
+    int count = 0;
+    while (writes[count].name) count++;
+    bool any = false;
+    for (int i = 0; i < IMAGE_COUNT; i++) {
+        const image_row *row = &image_table[i];
+        if (!(row->groups & group) || !c->image[i].id) continue;
+        any = true;
+        variant_add(words, row->word != NULL, row->word);
+        writes[count++] = (pass_picture){row->slot, &c->image[i]};
+    }
+    return any;
 }
 
 bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, error *e)

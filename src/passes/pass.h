@@ -12,9 +12,11 @@
 #include "light/environment.h"
 #include "light/proxies.h"
 #include "light/sun.h"
+#include "passes/images.h"
 #include "passes/planes.h"
+#include "passes/variants.h"
 
-enum { PASS_MAX_TIMINGS = 48, PASS_MAX_UPLOADS = 12, SH_IMAGES = 5 };
+enum { PASS_MAX_TIMINGS = 48, PASS_MAX_UPLOADS = 12 };
 
 typedef struct pass_timing {
     const char *name;
@@ -104,17 +106,15 @@ typedef struct pass_context {
     struct trace_scene *trace;           // the same; for raytrace
 
     int width, height;
-    // Inputs on the GPU; id 0 where the plan does not need them.
-    gpu_image depth, normal, albedo, beauty, material, emission, diffuse_direct, coverage;
-    // Layers; id 0 until their pass has run.
-    gpu_image occlusion, visibility, radiance, indirect, specular, diffuse_share, composite, diffuse, depthmask;
-    gpu_image half_difference; // how much the second half of a method's slices moved the occlusion; for pass_denoise
-    gpu_image error;           // estimated standard error of the occlusion
-    gpu_image bent;            // mean open direction of the cosine-weighted hemisphere, camera space: 2/3 long where all is open
-    gpu_image sh[SH_IMAGES]; // SH vector of cosine-weighted visibility, coefficients 0 1 2 | 3 4 5 | 6 7 8 and, with four bands,
-                             // | 9 10 11 12 | 13 14 15
-    gpu_image plane_image;   // the planes, for the shader
-    gpu_image surface;       // depth and normal in one texel, for the slice marches
+    // id 0: the frame has none, or its pass has not run.
+    union {
+        gpu_image image[IMAGE_COUNT];
+        struct { // the same by name, in the order of the rows
+            gpu_image depth, normal, albedo, beauty, material, emission, diffuse_direct, coverage;
+            gpu_image occlusion, radiance, indirect, composite, visibility, specular, diffuse, depthmask, bent;
+            gpu_image sh[SH_IMAGES], error, diffuse_share, half_difference, plane_image, surface;
+        };
+    };
 
     bool suns_apart;  // radiance and visibility lack the suns of `sunless`, which bear no filter, until pass_suns adds them
     bool denoised;    // the occlusion is, and bears no blur
@@ -183,8 +183,14 @@ bool pass_run(pass_context *c, const pass_call *call, error *e);
 pass_timing pass_clock(const pass_context *c, const char *name);
 void pass_clock_stop(pass_context *c, pass_timing since);
 
-// Makes an image of the frame's size, cleared to `value` in every component.
+// Makes an image of the frame, of its size and its row's format, cleared to what is neutral. Nothing if it is there.
+bool pass_make_image(pass_context *c, image_id id, error *e);
+// The same for one that is a pass's own, cleared to `value` in every component; the pass frees it.
 bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, error *e);
+
+// Adds what the frame has of the images of `group` (IMAGE_FILLED ...) to a call's words and to the end of its pictures; false if
+// it has none.
+bool pass_add_group(const pass_context *c, unsigned group, variant *words, pass_picture writes[PASS_MOST_WRITES + 1]);
 
 // ---- the passes, one file and one shader each
 // ------------------------------------------------------------------------------------
@@ -214,11 +220,9 @@ bool pass_denoise_down(pass_context *c, const pass_denoising *d, error *e);
 bool pass_denoise(pass_context *c, error *e); // occlusion: in place
 // In place, over `radius` pixels; NULL = none.
 bool pass_blur(pass_context *c, int radius, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e);
-// What the method and the bounce made of a frame of half the size (gbuffer/half.h), brought to the size of `c`: its occlusion,
-// visibility, radiance, indirect, bent and sh, as far as `small` has them and `c` has not; and indirect alone, where it is made
-// after the others have gone.
-bool pass_upsample(pass_context *c, const pass_context *small, error *e);
-bool pass_upsample_indirect(pass_context *c, const pass_context *small, error *e);
+// What the method and the bounce made of a frame of half the size (gbuffer/half.h), brought to the size of `c`: the images of
+// `which` that `small` has and `c` has not.
+bool pass_upsample(pass_context *c, const pass_context *small, image_set which, error *e);
 // Unseen spheres: they block before the looks, and add their bounce after the method's. Both do nothing without spheres.
 bool pass_proxies(pass_context *c, error *e);                 // occlusion, visibility, radiance, bent, sh: in place
 bool pass_proxies_bounce(pass_context *c, error *e);          // indirect: in place
@@ -226,7 +230,15 @@ bool pass_tone(pass_context *c, gpu_image *scalar, error *e); // scale and contr
 bool pass_irradiance(pass_context *c, error *e);              // occlusion -> radiance
 bool pass_edges(pass_context *c, error *e);                   // fills the layers of partly covered pixels
 bool pass_specular(pass_context *c, error *e);                // material, albedo -> specular, diffuse_share
-bool pass_depthmask(pass_context *c, error *e);               // depth -> depthmask
 bool pass_composite(pass_context *c, error *e);               // layers -> composite
+
+// Those that make a layer which nothing else needs.
+#define IMAGE(id, ...)
+#define LAYER(id, ...)
+#define PASS_LAYER(id, pass, ...) bool pass(pass_context *c, error *e);
+#include "passes/image_rows.h"
+#undef IMAGE
+#undef LAYER
+#undef PASS_LAYER
 
 #endif

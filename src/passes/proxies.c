@@ -38,52 +38,24 @@ static bool begin(proxy_run *r, pass_context *c, error *e)
     return upload(c, &r->spheres, e);
 }
 
-// The SH vector has images enough for a run of its own.
-static bool block_vector(const proxy_run *r, error *e)
+static bool block(const proxy_run *r, unsigned group, const char *label, bool with_vector, error *e)
 {
-    pass_context *c = r->c;
-    const pass_call call = {
-        .program = "proxies",
-        .label = "proxies sh",
-        .variant = c->sh[3].id ? "SH BANDS3" : "SH",
-        PASS_PARAMS(r->params),
-        .reads = {{"sphere_image", &r->spheres}},
-        .writes = {{"sh0_image", &c->sh[0]},
-                   {"sh1_image", &c->sh[1]},
-                   {"sh2_image", &c->sh[2]},
-                   {"sh3_image", &c->sh[3]},
-                   {"sh4_image", &c->sh[4]}},
-    };
-    return c->sh[0].id == 0 || pass_run(c, &call, e);
-}
-
-static bool block_layers(const proxy_run *r, error *e)
-{
-    pass_context *c = r->c;
     variant v = {{0}};
-    variant_add(&v, true, "OCCLUSION");
-    variant_add(&v, c->sh[0].id != 0, "VECTOR");
-    variant_add(&v, c->bent.id != 0, "BENT");
-    variant_add(&v, c->visibility.id != 0, "VISIBILITY");
-    variant_add(&v, c->radiance.id != 0, "RADIANCE");
-    const pass_call call = {
-        .program = "proxies",
-        .variant = v.words,
-        PASS_PARAMS(r->params),
-        .reads = {{"sphere_image", &r->spheres}},
-        .writes = {{"occlusion_image", &c->occlusion},
-                   {"bent_image", &c->bent},
-                   {"visibility_image", &c->visibility},
-                   {"radiance_image", &c->radiance}},
-    };
-    return pass_run(c, &call, e);
+    pass_call call = {.program = "proxies",
+                      .label = label,
+                      .variant = v.words,
+                      PASS_PARAMS(r->params),
+                      .reads = {{"sphere_image", &r->spheres}}};
+    variant_add(&v, with_vector, "VECTOR");
+    return !pass_add_group(r->c, group, &v, call.writes) || pass_run(r->c, &call, e);
 }
 
 bool pass_proxies(pass_context *c, error *e)
 {
     proxy_run r;
     if (!c->proxies || c->proxies->count == 0) return true;
-    bool ok = begin(&r, c, e) && block_layers(&r, e) && block_vector(&r, e);
+    bool ok = begin(&r, c, e) && block(&r, IMAGE_BLOCKED, "proxies", c->image[IMAGE_SH_0].id != 0, e) &&
+              block(&r, IMAGE_VECTOR, "proxies sh", false, e);
     gpu_image_free(&r.spheres);
     return ok;
 }
@@ -99,7 +71,7 @@ bool pass_proxies_bounce(pass_context *c, error *e)
         .variant = "BOUNCE",
         PASS_PARAMS(r.params),
         .reads = {{"sphere_image", &r.spheres}},
-        .writes = {{"indirect_image", &c->indirect}},
+        .writes = {{"indirect_image", &c->image[IMAGE_INDIRECT]}},
     };
     ok = ok && pass_run(c, &call, e);
     gpu_image_free(&r.spheres);

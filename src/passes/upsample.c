@@ -5,62 +5,64 @@
 // A surface may bend by this many footprints of a small pixel off the pixel's tangent plane before a tap loses weight.
 static const float SHARPNESS = 0.5f;
 
-// Layers on their way; those of a draw share the weights of the taps.
+enum { SCALARS = 2, COLOURS = 2 }; // of a draw
+
+// Images on their way; those of a draw share the weights of the taps.
 typedef struct draw {
-    const gpu_image *from[4]; // two scalars, two of four components; NULL: none
-    gpu_image *to[4];
-    bool open_light; // the first of four components is radiance
+    image_id scalars[SCALARS], colours[COLOURS];
+    int scalar_count, colour_count;
 } draw;
 
 static bool bring(pass_context *c, const pass_context *small, const draw *d, error *e)
 {
+    static const char *const in[] = {"scalar0_in", "scalar1_in", "colour0_in", "colour1_in"}, *const out[] = {
+                                                                                                  "scalar0_out", "scalar1_out",
+                                                                                                  "colour0_out", "colour1_out"};
     upsample_params params = {.small_size = {small->width, small->height}, .sharpness = SHARPNESS};
-    for (int i = 0; d->open_light && i < 9; i++)
-        for (int k = 0; k < 3; k++) params.light[i][k] = (float)(small->suns_apart ? c->sunless->rest[i][k] : c->env->sh[i][k]);
-    for (int k = 0; k < 4; k++)
-        if (d->from[k] && !pass_make(c, d->to[k], k < 2 ? GL_R32F : GL_RGBA32F, k < 2 ? 1.0f : 0.0f, e)) return false;
+    pass_call call = {.program = "upsample",
+                      PASS_PARAMS(params),
+                      .reads = {{"small_depth", &small->image[IMAGE_DEPTH]}, {"small_normal", &small->image[IMAGE_NORMAL]}}};
     variant v = {{0}};
-    variant_number(&v, "SCALARS", (d->from[0] != NULL) + (d->from[1] != NULL));
-    variant_number(&v, "COLOURS", (d->from[2] != NULL) + (d->from[3] != NULL));
-    variant_add(&v, d->open_light, "OPEN_LIGHT");
-    const pass_call call = {
-        .program = "upsample",
-        .variant = v.words,
-        PASS_PARAMS(params),
-        .reads = {{"small_depth", &small->depth},
-                  {"small_normal", &small->normal},
-                  {"scalar0_in", d->from[0]},
-                  {"scalar1_in", d->from[1]},
-                  {"colour0_in", d->from[2]},
-                  {"colour1_in", d->from[3]}},
-        .writes = {{"scalar0_out", d->to[0]}, {"scalar1_out", d->to[1]}, {"colour0_out", d->to[2]}, {"colour1_out", d->to[3]}},
-    };
+    bool open_light = d->colour_count > 0 && image_table[d->colours[0]].resampled == AS_OPEN_LIGHT;
+    for (int i = 0; open_light && i < 9; i++)
+        for (int k = 0; k < 3; k++) params.light[i][k] = (float)(small->suns_apart ? c->sunless->rest[i][k] : c->env->sh[i][k]);
+    for (int k = 0; k < d->scalar_count + d->colour_count; k++) {
+        bool colour = k >= d->scalar_count;
+        int place = colour ? SCALARS + k - d->scalar_count : k;
+        image_id id = colour ? d->colours[k - d->scalar_count] : d->scalars[k];
+        if (!pass_make_image(c, id, e)) return false;
+        call.reads[2 + k] = (pass_picture){in[place], &small->image[id]};
+        call.writes[k] = (pass_picture){out[place], &c->image[id]};
+    }
+    variant_number(&v, "SCALARS", d->scalar_count);
+    variant_number(&v, "COLOURS", d->colour_count);
+    variant_add(&v, open_light, "OPEN_LIGHT");
+    call.variant = v.words;
     return pass_run(c, &call, e);
 }
 
-bool pass_upsample(pass_context *c, const pass_context *small, error *e)
+// The next image from `*at` on that is resampled in this way and has to come; false after the last.
+static bool next_of(const pass_context *c, const pass_context *small, image_set which, bool colour, int *at, image_id *found)
 {
-    const gpu_image *from[3 + SH_IMAGES] = {&small->radiance, &small->indirect, &small->bent};
-    gpu_image *to[3 + SH_IMAGES] = {&c->radiance, &c->indirect, &c->bent};
-    draw d = {{&small->occlusion, small->visibility.id ? &small->visibility : NULL}, {&c->occlusion, &c->visibility}, false};
-    bool waiting = true; // the scalars go with the first
-    c->suns_apart = small->suns_apart;
-    for (int k = 0; k < SH_IMAGES; k++) from[3 + k] = &small->sh[k], to[3 + k] = &c->sh[k];
-    for (int k = 0, n = 2; k < 3 + SH_IMAGES || waiting; k++) {
-        if (k < 3 + SH_IMAGES && from[k]->id && !to[k]->id) {
-            d.open_light |= k == 0;
-            d.from[n] = from[k], d.to[n++] = to[k];
-        }
-        if (n < 4 && k < 2 + SH_IMAGES) continue;
-        if ((n > 2 || waiting) && !bring(c, small, &d, e)) return false;
-        d = (draw){0};
-        n = 2, waiting = false;
+    for (; *at < IMAGE_COUNT; (*at)++) {
+        image_resampling as = image_table[*at].resampled;
+        if (as == AS_NOTHING || (as != AS_SCALAR) != colour || !(which & IMAGE_BIT(*at))) continue;
+        if (!small->image[*at].id || c->image[*at].id) continue;
+        *found = (image_id)(*at)++;
+        return true;
     }
-    return true;
+    return false;
 }
 
-bool pass_upsample_indirect(pass_context *c, const pass_context *small, error *e)
+bool pass_upsample(pass_context *c, const pass_context *small, image_set which, error *e)
 {
-    const draw d = {{NULL, NULL, &small->indirect}, {NULL, NULL, &c->indirect}, false};
-    return bring(c, small, &d, e);
+    int scalar = 0, colour = 0;
+    c->suns_apart = small->suns_apart;
+    for (;;) {
+        draw d = {.scalar_count = 0};
+        while (d.scalar_count < SCALARS && next_of(c, small, which, false, &scalar, &d.scalars[d.scalar_count])) d.scalar_count++;
+        while (d.colour_count < COLOURS && next_of(c, small, which, true, &colour, &d.colours[d.colour_count])) d.colour_count++;
+        if (d.scalar_count + d.colour_count == 0) return true;
+        if (!bring(c, small, &d, e)) return false;
+    }
 }

@@ -75,7 +75,7 @@ static void explain_plan(const frame_result *r, FILE *to)
         fprintf(to, "  %-12s %s: %s\n", r->plan.steps[i].pass, r->plan.steps[i].runs ? "yes" : "no", r->plan.steps[i].why);
     fprintf(to, "  layers:");
     for (int l = 0; l < LAYER_COUNT; l++)
-        if (r->plan.layers & 1u << l) fprintf(to, " %s", layer_table[l].name);
+        if (r->plan.layers & 1u << l) fprintf(to, " %s", layer_table[l]->name);
     fprintf(to, "\n");
 }
 

@@ -82,9 +82,9 @@ static bool run_half(pass_context *c, const gbuffer *half, const plan *p, error 
     // All layers go up together, unless the bounce needs what is done to them at either size.
     bool early =
         p->bounce && c->set.relight && (p->tone || p->irradiance || (c->proxies && c->proxies->count > 0) || small.suns_apart);
-    ok = ok && (!early || pass_upsample(c, &small, e));
+    ok = ok && (!early || pass_upsample(c, &small, ~0u, e));
     if (ok && p->bounce) ok = (!early || (pass_suns(&small, e) && finish_light(&small, p, e))) && run_bounce(&small, p, e);
-    ok = ok && (early ? pass_upsample_indirect(c, &small, e) : pass_upsample(c, &small, e));
+    ok = ok && (early ? pass_upsample(c, &small, IMAGE_BIT(IMAGE_INDIRECT), e) : pass_upsample(c, &small, ~0u, e));
     take_times(c, &small);
     pass_end(&small);
     return ok && pass_suns(c, e) && finish_light(c, p, e);

@@ -3,28 +3,11 @@
 #include <stdio.h>
 #include <string.h>
 
-const layer_info layer_table[LAYER_COUNT] = {
-    [LAYER_OCCLUSION] = {"occlusion", "R", RANGE_SHARE, true},
-    [LAYER_RADIANCE] = {"radiance", "RGB", RANGE_LIGHT, true},
-    [LAYER_INDIRECT] = {"indirect", "RGB", RANGE_LIGHT, true},
-    [LAYER_COMPOSITE] = {"composite", "RGB", RANGE_ANY, true},
-    [LAYER_VISIBILITY] = {"visibility", "R", RANGE_SHARE, false},
-    [LAYER_SPECULAR] = {"specular", "RGB", RANGE_LIGHT, false},
-    [LAYER_DIFFUSE] = {"diffuse", "RGB", RANGE_ANY, false},
-    [LAYER_DEPTHMASK] = {"depthmask", "R", RANGE_ANY, false},
-    [LAYER_BENT] = {"bent", "XYZ", RANGE_ANY, false},
-    [LAYER_SH_0] = {"sh_0", "RGB", RANGE_ANY, false},
-    [LAYER_SH_1] = {"sh_1", "RGB", RANGE_ANY, false},
-    [LAYER_SH_2] = {"sh_2", "RGB", RANGE_ANY, false},
-    [LAYER_SH_3] = {"sh_3", "HIJKLMN", RANGE_ANY, false},
-    [LAYER_ERROR] = {"error", "R", RANGE_LIGHT, false},
-};
-
 static bool unknown(const char *name, size_t n, error *e)
 {
     char known[160] = "";
     for (int i = 0; i < LAYER_COUNT; i++)
-        snprintf(known + strlen(known), sizeof known - strlen(known), "%s%s", i ? ", " : "", layer_table[i].name);
+        snprintf(known + strlen(known), sizeof known - strlen(known), "%s%s", i ? ", " : "", layer_table[i]->name);
     return err_set(e, ERR_USAGE, NULL, NULL, "--layers: there is no layer '%.*s'; the layers are %s", (int)n, name, known);
 }
 
@@ -32,12 +15,12 @@ bool layers_parse(const char *list, unsigned *set, error *e)
 {
     *set = 0;
     for (int i = 0; !list && i < LAYER_COUNT; i++)
-        if (layer_table[i].by_default) *set |= 1u << i;
+        if (layer_table[i]->by_default) *set |= 1u << i;
     while (list && *list) {
         size_t n = strcspn(list, ",");
         int found = -1;
         for (int i = 0; i < LAYER_COUNT; i++)
-            if (strlen(layer_table[i].name) == n && strncmp(layer_table[i].name, list, n) == 0) found = i;
+            if (strlen(layer_table[i]->name) == n && strncmp(layer_table[i]->name, list, n) == 0) found = i;
         if (found < 0) return unknown(list, n, e);
         *set |= 1u << found;
         list += n + (list[n] == ',');

@@ -55,8 +55,8 @@ static bool is_ours(const naming *n, const plan *p, const char *channel)
 {
     char name[NAME_SIZE];
     for (int l = 0; l < LAYER_COUNT; l++)
-        for (int k = 0; p->layers & 1u << l && layer_table[l].channels[k]; k++) {
-            layer_channel(n, layer_table[l].name, layer_table[l].channels[k], name);
+        for (int k = 0; p->layers & 1u << l && layer_table[l]->channels[k]; k++) {
+            layer_channel(n, layer_table[l]->name, layer_table[l]->channels[k], name);
             if (strcmp(name, channel) == 0) return true;
         }
     layer_channel(n, "composite", 'A', name);
@@ -140,8 +140,8 @@ static void add_layers(assembly *a, const job *j, const frame_result *r)
 {
     const naming n = naming_of(j, r);
     for (int l = 0; l < LAYER_COUNT; l++)
-        for (int k = 0; r->samples[l][0] && layer_table[l].channels[k]; k++) {
-            layer_channel(&n, layer_table[l].name, layer_table[l].channels[k], a->names[a->our_count]);
+        for (int k = 0; r->samples[l][0] && layer_table[l]->channels[k]; k++) {
+            layer_channel(&n, layer_table[l]->name, layer_table[l]->channels[k], a->names[a->our_count]);
             a->ours[a->our_count] = (exrio_out_channel){a->names[a->our_count], r->types[l], r->samples[l][k]};
             a->our_count++;
         }

@@ -28,7 +28,7 @@ static bool cannot(plan *p, const options *o, const exrio_file *file, layer_id l
                    log_t *log, error *e)
 {
     if (!asked(p, l)) return true;
-    const char *name = layer_table[l].name;
+    const char *name = layer_table[l]->name;
     if (o->layers) return err_set(e, ERR_INPUT, file->path, channel, "layer '%s' cannot be made: %s", name, because);
     p->layers &= ~(1u << l);
     log_warn(log, name, "layer '%s' is left out: %s", name, because);

@@ -42,7 +42,10 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static bool is_signed(layer_id l) { return l == LAYER_BENT || strncmp(layer_table[l].name, "sh_", 3) == 0; }
+static bool is_light(layer_id l)
+{
+    return layer_table[l]->display == DISPLAY_LIGHT || layer_table[l]->display == DISPLAY_PICTURE;
+}
 
 // Factor that puts the 95th percentile of a layer's light, over its surfaces, at 0.8; 1 for what is no light.
 static float exposure(const frame_result *r, layer_id l)
@@ -50,7 +53,7 @@ static float exposure(const frame_result *r, layer_id l)
     const float *v = r->layers[l];
     float values[EXPOSURE_SAMPLES];
     size_t n = 0, pixels = (size_t)r->gb.width * (size_t)r->gb.height, stride = r->gb.valid / EXPOSURE_SAMPLES + 1, seen = 0;
-    if (strcmp(layer_table[l].channels, "RGB") != 0 || is_signed(l)) return 1.0f;
+    if (!is_light(l)) return 1.0f;
     for (size_t i = 0; i < pixels && n < EXPOSURE_SAMPLES; i++)
         if (r->gb.depth[i] > 0.0f && seen++ % stride == 0) values[n++] = fmaxf(v[3 * i], fmaxf(v[3 * i + 1], v[3 * i + 2]));
     if (n == 0) return 1.0f;
@@ -79,8 +82,8 @@ typedef struct dot {
 static bool average(const frame_result *r, layer_id l, int x0, int y0, int size, dot *d)
 {
     const gbuffer *gb = &r->gb;
-    size_t channels = strlen(layer_table[l].channels);
-    bool picture = l == LAYER_COMPOSITE, alpha = picture && r->resolution.components[ROLE_ALPHA] > 0;
+    size_t channels = strlen(layer_table[l]->channels);
+    bool picture = layer_table[l]->display == DISPLAY_PICTURE, alpha = picture && r->resolution.components[ROLE_ALPHA] > 0;
     float n = 0.0f;
     *d = (dot){0};
     for (int y = y0; y < y0 + size && y < gb->height; y++)
@@ -98,15 +101,19 @@ static bool average(const frame_result *r, layer_id l, int x0, int y0, int size,
 
 static uint8_t share(float v) { return (uint8_t)lrintf(255.0f * fminf(1.0f, fmaxf(0.0f, v))); }
 
-static bool is_light(layer_id l) { return layer_table[l].channels[1] && !is_signed(l) && l != LAYER_DEPTHMASK; }
-
 // What is no light, as a code.
 static uint8_t shade(const frame_result *r, layer_id l, const dot *d, int k)
 {
-    if (is_signed(l)) return share(0.5f * (d->v[k] + 1.0f));
-    if (l == LAYER_DEPTHMASK) return share(d->v[0] + 1.0f); // its 0 is shown white
-    if (l == LAYER_ERROR) return share(d->v[0] / (2.0f * (float)r->set.error));
-    return share(d->v[0]);
+    switch (layer_table[l]->display) {
+    case DISPLAY_SIGNED:
+        return share(0.5f * (d->v[k] + 1.0f));
+    case DISPLAY_DARKENING:
+        return share(d->v[0] + 1.0f);
+    case DISPLAY_ERROR:
+        return share(d->v[0] / (2.0f * (float)r->set.error));
+    default:
+        return share(d->v[0]);
+    }
 }
 
 static bool has_display(const options *o) { return o->display || o->view || colour_config(o->ocio); }
@@ -211,7 +218,7 @@ bool preview_write(const options *o, const frame_result *r, const char *path, er
         int x = GAP + cell % COLUMNS * (z.width + GAP), y = GAP + cell / COLUMNS * (z.height + LABEL + GAP);
         float gain = exposure(r, (layer_id)l);
         char label[64];
-        snprintf(label, sizeof label, gain == 1.0f ? "%s" : "%s x%.2g", layer_table[l].name, (double)gain);
+        snprintf(label, sizeof label, gain == 1.0f ? "%s" : "%s x%.2g", layer_table[l]->name, (double)gain);
         canvas_text(&s, x, y + (LABEL - CANVAS_TEXT_HEIGHT) / 2, label);
         ok = draw_layer(&s, o, r, (layer_id)l, x, y + LABEL, &z, gain, e);
         cell++;

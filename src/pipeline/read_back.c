@@ -52,7 +52,7 @@ static void free_workspace(workspace *w)
     free(w->scratch.v);
 }
 
-static size_t channels_of(layer_id l) { return strlen(layer_table[l].channels); }
+static size_t channels_of(layer_id l) { return strlen(layer_table[l]->channels); }
 static int images_of(layer_id l) { return channels_of(l) > 4 ? 2 : 1; }
 
 // ---- conversion
@@ -68,7 +68,7 @@ static inline float sane(float v, bool share, bool light)
 // One channel of every `stride` floats.
 static void sanitise(layer_id l, const float *v, size_t stride, size_t pixels, float *to)
 {
-    bool share = layer_table[l].range == RANGE_SHARE, light = layer_table[l].range == RANGE_LIGHT;
+    bool share = layer_table[l]->range == RANGE_SHARE, light = layer_table[l]->range == RANGE_LIGHT;
     for (size_t i = 0; i < pixels; i++) to[i] = sane(v[i * stride], share, light);
 }
 
@@ -133,7 +133,7 @@ static bool convert_piece(void *context, size_t item, int worker)
     size_t channels = channels_of(l), clamped = 0;
     float *v = c->scratch + (size_t)worker * scratch_size(c);
     for (size_t k = 0; k < channels; k++) sanitise(l, b->v[k / 4] + from * b->stored + k % 4, b->stored, pixels, v + k * pixels);
-    if (l == LAYER_BENT) point_along(&r->gb, first, v, pixels);
+    if (layer_table[l]->range == RANGE_DIRECTION) point_along(&r->gb, first, v, pixels);
     for (size_t k = 0; k < channels; k++) {
         float *floats = r->layers[l] ? r->layers[l] + channels * first + k : NULL;
         for (size_t i = 0; floats && i < pixels; i++) floats[i * channels] = v[k * pixels + i];
@@ -221,30 +221,23 @@ static bool start_layer(gpu *g, const gpu_image *image, layer_id l, frame_result
     return true;
 }
 
+// The first, of a layer in two.
+static const gpu_image *image_of(const pass_context *c, layer_id l)
+{
+    const image_row *row = layer_table[l];
+    bool missing = c->image[row->image].id == 0 && row->otherwise != IMAGE_DEPTH;
+    return &c->image[missing ? row->otherwise : row->image];
+}
+
 bool read_back_begin(job *j, const pass_context *c, frame_result *r, error *e)
 {
-    const gpu_image *images[LAYER_COUNT] = {
-        [LAYER_OCCLUSION] = &c->occlusion,
-        [LAYER_RADIANCE] = &c->radiance,
-        [LAYER_INDIRECT] = &c->indirect,
-        [LAYER_COMPOSITE] = &c->composite,
-        [LAYER_VISIBILITY] = c->visibility.id ? &c->visibility : &c->occlusion,
-        [LAYER_SPECULAR] = &c->specular,
-        [LAYER_DIFFUSE] = &c->diffuse,
-        [LAYER_DEPTHMASK] = &c->depthmask,
-        [LAYER_BENT] = &c->bent,
-        [LAYER_SH_0] = &c->sh[0],
-        [LAYER_SH_1] = &c->sh[1],
-        [LAYER_SH_2] = &c->sh[2],
-        [LAYER_SH_3] = &c->sh[3],
-        [LAYER_ERROR] = &c->error,
-    };
     workspace w = {0};
     bool ok = true;
     for (int i = 0; ok && i < LAYER_COUNT; i++) {
         layer_id l = (layer_id)i;
-        if (!(r->plan.layers & 1u << l) || (j->g.mapped && start_layer(&j->g, images[l], l, r))) continue;
-        ok = fetch_directly(j, images[l], l, r, &w, e);
+        const gpu_image *image = image_of(c, l);
+        if (!(r->plan.layers & 1u << l) || (j->g.mapped && start_layer(&j->g, image, l, r))) continue;
+        ok = fetch_directly(j, image, l, r, &w, e);
     }
     free_workspace(&w);
     return ok && gpu_check(&j->g, "the read-back", e);

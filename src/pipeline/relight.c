@@ -17,7 +17,7 @@ static int count(const options *o) { return o->sh_bands == 3 ? 16 : 9; }
 static void name_of(const options *o, const exrio_file *file, const char *view, int i, char *name)
 {
     char plain[NAME_SIZE];
-    const layer_info *l = &layer_table[i < 9 ? LAYER_SH_0 + i / 3 : LAYER_SH_3];
+    const image_row *l = layer_table[i < 9 ? LAYER_SH_0 + i / 3 : LAYER_SH_3];
     snprintf(plain, NAME_SIZE, "%s%s.%c", o->prefix ? o->prefix : "", l->name, l->channels[i < 9 ? i % 3 : i - 9]);
     view_name(file, view, plain, name, NAME_SIZE);
 }

@@ -210,7 +210,7 @@ static json_object *report_of(const job *j, const frame_result *r, const char *o
     json_put_number(o, "off_frame_share", report_off_frame_share(r));
     json_put_number(o, "off_ray_share", r->gb.valid ? (double)r->gb.off_ray / (double)r->gb.valid : 0.0);
     for (int l = 0; l < LAYER_COUNT; l++)
-        if (r->samples[l][0]) json_object_array_add(layers, json_text(layer_table[l].name));
+        if (r->samples[l][0]) json_object_array_add(layers, json_text(layer_table[l]->name));
     json_put(o, "layers", layers);
     json_put(o, "planes", planes_of(r)); // camera space: normal . x = offset; share of the surfaces
     json_put(o, "passes", passes_of(r));

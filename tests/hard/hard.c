@@ -96,13 +96,13 @@ void hard_check_layers(const frame_result *r, const char *what)
     size_t pixels = (size_t)r->gb.width * (size_t)r->gb.height;
     int made = 0;
     for (int l = 0; l < LAYER_COUNT; l++) {
-        size_t n = pixels * strlen(layer_table[l].channels);
+        size_t n = pixels * strlen(layer_table[l]->channels);
         const float *v = r->layers[l];
         made += v != NULL;
         for (size_t i = 0; v && i < n; i++) {
             bool good = isfinite(v[i]) && (!is_share(l) || (v[i] >= 0.0f && v[i] <= 1.0f)) && (!is_light(l) || v[i] >= 0.0f);
             if (!good)
-                fail_msg("%s, %s: %s holds %g at sample %zu", what, r->plan.method->name, layer_table[l].name, (double)v[i], i);
+                fail_msg("%s, %s: %s holds %g at sample %zu", what, r->plan.method->name, layer_table[l]->name, (double)v[i], i);
         }
     }
     assert_true(made > 0);
@@ -111,7 +111,7 @@ void hard_check_layers(const frame_result *r, const char *what)
 difference hard_compare(const frame_result *a, const frame_result *b, layer_id layer, const unsigned char *mask)
 {
     difference d = {0};
-    size_t channels = strlen(layer_table[layer].channels);
+    size_t channels = strlen(layer_table[layer]->channels);
     const float *u = a->layers[layer], *v = b->layers[layer];
     assert_int_equal(a->gb.width, b->gb.width);
     assert_int_equal(a->gb.height, b->gb.height);

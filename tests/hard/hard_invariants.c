@@ -211,7 +211,7 @@ static void flip(const gbuffer *from, bool x_flip, bool y_flip, bool transpose, 
 static void unflip(const frame_result *from, bool x_flip, bool y_flip, bool transpose, frame_result *like)
 {
     for (int l = 0; l < LAYER_COUNT; l++) {
-        size_t channels = strlen(layer_table[l].channels);
+        size_t channels = strlen(layer_table[l]->channels);
         if (!from->layers[l]) continue;
         for (int y = 0; y < like->gb.height; y++)
             for (int x = 0; x < like->gb.width; x++) {
@@ -278,7 +278,7 @@ static void tiles(void **state)
             for (int l = 0; l < LAYER_COUNT; l++)
                 if (a.layers[l])
                     assert_memory_equal(a.layers[l], b.layers[l],
-                                        WIDTH * HEIGHT * sizeof(float) * strlen(layer_table[l].channels));
+                                        WIDTH * HEIGHT * sizeof(float) * strlen(layer_table[l]->channels));
             rig_free_result(&b);
         }
         rig_free_result(&a);

@@ -113,14 +113,14 @@ static void every_layer_alone(void **state)
             for (int l = 0; l < LAYER_COUNT; l++) {
                 plan p;
                 error e;
-                options o = options_of(m, layer_table[l].name, inputs);
+                options o = options_of(m, layer_table[l]->name, inputs);
                 bool ok = planned(&o, inputs, &p, &e), can = can_be_made((layer_id)l, m, inputs);
                 if (ok != can)
-                    fail_msg("%s by %s with inputs %x: %s", layer_table[l].name, m->name, inputs, ok ? "made" : e.message);
+                    fail_msg("%s by %s with inputs %x: %s", layer_table[l]->name, m->name, inputs, ok ? "made" : e.message);
                 made += ok, refused += !ok;
                 if (!ok) {
                     assert_int_equal(e.code, ERR_INPUT);
-                    assert_non_null(strstr(e.message, layer_table[l].name));
+                    assert_non_null(strstr(e.message, layer_table[l]->name));
                     continue;
                 }
                 bool relit = inputs & ENV || !(inputs & BEAUTY), lit = l == LAYER_COMPOSITE || l == LAYER_DIFFUSE;

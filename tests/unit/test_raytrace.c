@@ -379,14 +379,14 @@ static void back_ends_agree(void **state)
     for (int l = 0; l < LAYER_COUNT; l++) {
         int differ = 0;
         for (int i = 0; embree[l] && i < pixels; i++) {
-            int channels = (int)strlen(layer_table[l].channels);
+            int channels = (int)strlen(layer_table[l]->channels);
             bool same = true;
             for (int k = 0; k < channels; k++)
                 same &= fabsf(embree[l][i * channels + k] - cells[l][i * channels + k]) <=
                         1e-5f * fmaxf(1.0f, embree[l][i * channels + k]);
             differ += !same;
         }
-        if (embree[l]) print_message("%s: %d of %d pixels differ\n", layer_table[l].name, differ, pixels);
+        if (embree[l]) print_message("%s: %d of %d pixels differ\n", layer_table[l]->name, differ, pixels);
         assert_true(differ <= pixels / 10000);
         assert_int_equal(embree[l] != NULL, cells[l] != NULL);
     }

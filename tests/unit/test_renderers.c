@@ -87,7 +87,7 @@ static int tear_down(void **state)
 // Root mean square and largest difference of a layer.
 static void compare(const frame_result *a, const frame_result *b, layer_id l, double *rms, double *largest)
 {
-    size_t n = (size_t)a->gb.width * (size_t)a->gb.height * strlen(layer_table[l].channels);
+    size_t n = (size_t)a->gb.width * (size_t)a->gb.height * strlen(layer_table[l]->channels);
     double sum = 0;
     assert_true(box2_equal(a->gb.data_window, b->gb.data_window));
     assert_true(a->layers[l] && b->layers[l]);
@@ -141,7 +141,7 @@ static void check_fact(const renderer_fact *f)
         compare(&r, original, (layer_id)l, &rms, &largest);
         if (!(rms <= bound(f, (layer_id)l))) print_error("%s, %s:\n", f->expected, f->source);
         assert_true(rms <= bound(f, (layer_id)l));
-        print_message("    %-10s rms %.2g, largest %.2g\n", layer_table[l].name, rms, largest);
+        print_message("    %-10s rms %.2g, largest %.2g\n", layer_table[l]->name, rms, largest);
     }
     check_pose(f, &r.gb.camera);
     frame_free(&r);

@@ -141,7 +141,7 @@ static void write_names(const char *path, naming how)
 static void same_layers(const frame_result *a, const frame_result *b)
 {
     for (int l = LAYER_OCCLUSION; l <= LAYER_COMPOSITE; l++) {
-        size_t n = (size_t)a->gb.width * (size_t)a->gb.height * strlen(layer_table[l].channels);
+        size_t n = (size_t)a->gb.width * (size_t)a->gb.height * strlen(layer_table[l]->channels);
         assert_true(a->layers[l] && b->layers[l]);
         assert_memory_equal(a->layers[l], b->layers[l], n * sizeof(float));
     }

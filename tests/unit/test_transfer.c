@@ -72,7 +72,7 @@ static void assert_same(const frame_result *a, const frame_result *b)
     size_t pixels = (size_t)WIDTH * HEIGHT;
     assert_int_equal(a->clamped, b->clamped);
     for (int l = 0; l < LAYER_COUNT; l++) {
-        size_t channels = strlen(layer_table[l].channels);
+        size_t channels = strlen(layer_table[l]->channels);
         assert_int_equal(a->layers[l] != NULL, b->layers[l] != NULL);
         assert_int_equal(a->layers[l] != NULL, (a->plan.layers >> l) & 1u);
         if (!a->layers[l]) continue;
