@@ -83,7 +83,7 @@ static bool run_on(const options *o, run_files *files, const volatile int *stop_
     if (!batch_is(o) && !run_files_check(files, (const int[]){0}, 1, e)) return false;
     // A single frame is read while the context opens; what was made before is compared with the device first.
     bool alone = !batch_is(o) && !o->skip_existing;
-    run_files_read(files, o->skip_exact);
+    if (!run_files_read(files, o->skip_exact, e)) return false;
     if (alone) job_init(&j, o, log);
     bool ok = (alone || job_open(&j, o, log, e)) && check_targets(o, e);
     j.stop = stop_signal;
@@ -148,7 +148,7 @@ int main(int argc, char **argv)
     const volatile int *stop_signal = signals_catch();
     options_defaults(&o);
     if (!options_parse(argc, argv, &o, &e)) return fail(&o, &e);
-    o.literal = names_are_literal(&o);
+    if (!names_are_literal(&o, &o.literal, &e)) return fail(&o, &e);
     bool ok = true, told = tell(&o, &ok, &e);
     if (told) return finish_output(&e) && ok ? 0 : fail(&o, &e);
     log_t log;

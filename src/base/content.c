@@ -1,5 +1,6 @@
 #include "base/content.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -9,16 +10,20 @@
 enum { ROOM = 1 << 20, HEAD = 1 << 16 };
 
 typedef struct source {
+    const char *path;
     int fd;
     uint8_t *room; // ROOM bytes
     digester *d;
+    error *e;
 } source;
 
 static bool put_range(const source *s, uint64_t from, uint64_t to)
 {
     while (from < to) {
         size_t want = to - from < ROOM ? (size_t)(to - from) : ROOM;
-        if (infile_read_at(s->fd, s->room, want, from) != want) return false;
+        if (infile_read_at(s->fd, s->room, want, from) != want)
+            return errno ? err_set_system(s->e, ERR_INPUT, errno, s->path, "cannot be read")
+                         : err_set(s->e, ERR_INPUT, s->path, NULL, "cannot be read: it became shorter meanwhile");
         digest_put(s->d, s->room, want);
         from += want;
     }
@@ -38,33 +43,31 @@ static bool put_samples(const source *s, uint64_t head, uint64_t size)
     return ok;
 }
 
-static bool put_content(int fd, digester *d, uint64_t head, uint64_t size, bool all)
+// One of the two digests: `all` of the bytes, or the samples.
+static bool read_one(source *s, uint64_t head, uint64_t size, bool all, digest *out)
 {
-    source s = {fd, mem_pixels(ROOM, 1, NULL), d};
-    digest_put(d, &size, sizeof size);
-    bool ok = s.room && (all ? put_range(&s, 0, size) : put_samples(&s, head, size));
-    free(s.room);
+    s->d = digest_begin(s->e);
+    if (!s->d) return false;
+    digest_put(s->d, &size, sizeof size);
+    bool ok = all ? put_range(s, 0, size) : put_samples(s, head, size);
+    if (ok) *out = digest_of(s->d);
+    digest_free(s->d);
     return ok;
 }
 
-static digest read_one(int fd, uint64_t head, uint64_t size, bool all)
+bool content_read(const char *path, content_head head_of, bool exact, content *out, error *e)
 {
-    digest result = {0};
-    digester *d = digest_begin(NULL);
-    if (d && put_content(fd, d, head, size, all)) result = digest_of(d);
-    digest_free(d);
-    return result;
-}
-
-content content_read(const char *path, uint64_t head, bool exact)
-{
-    content c = {0};
-    error ignored = {0};
+    error why = {0};
     size_t size = 0;
-    int fd = infile_open(path, (infile_kind){NULL, ERR_INPUT}, &size, &ignored);
-    if (fd < 0) return c;
-    c.sampled = read_one(fd, head, size, false);
-    if (exact) c.exact = read_one(fd, head, size, true);
-    close(fd);
-    return c;
+    uint64_t head = 0;
+    *out = (content){0};
+    source s = {.path = path, .fd = infile_open(path, (infile_kind){NULL, ERR_INPUT}, &size, &why), .e = e};
+    if (s.fd < 0) return !why.refused || err_set_system(e, why.code, why.refused, path, "cannot be opened");
+    s.room = mem_pixels(ROOM, 1, e);
+    bool ok = s.room && (!head_of || head_of(path, s.fd, size, &head, e)) && read_one(&s, head, size, false, &out->sampled) &&
+              (!exact || read_one(&s, head, size, true, &out->exact));
+    if (!ok) *out = (content){0};
+    free(s.room);
+    close(s.fd);
+    return ok;
 }

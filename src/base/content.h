@@ -16,8 +16,11 @@ typedef struct content {
     digest sampled, exact; // exact: zero unless asked for
 } content;
 
-// head: so many first bytes count in any case. A file that cannot be read, or is not a regular one, has zeroes; it is not waited
-// for.
-content content_read(const char *path, uint64_t head, bool exact);
+// Where a file's head ends: so many first bytes count in any case. False with an error if the system does not let it look.
+typedef bool (*content_head)(const char *path, int fd, size_t size, uint64_t *head, error *e);
+
+// head: NULL for none. A file that does not exist, or is not a regular one, has zeroes; it is not waited for. ERR_INPUT where the
+// system refuses to look: that says nothing of what the file holds.
+bool content_read(const char *path, content_head head, bool exact, content *out, error *e);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 bool err_set(error *e, error_code code, const char *file, const char *channel, const char *format, ...)
 {
@@ -14,6 +15,13 @@ bool err_set(error *e, error_code code, const char *file, const char *channel, c
     snprintf(e->file, sizeof e->file, "%s", file ? file : "");
     snprintf(e->channel, sizeof e->channel, "%s", channel ? channel : "");
     return false;
+}
+
+bool err_set_system(error *e, error_code code, int number, const char *file, const char *what)
+{
+    if (!e || e->code != ERR_NONE) return false;
+    e->refused = number;
+    return err_set(e, code, file, NULL, "%s: %s", what, strerror(number));
 }
 
 void err_format(const error *e, char *buf, unsigned long size)

@@ -26,12 +26,16 @@ typedef struct error {
     char message[4096]; // without file name; a complete sentence without the final full stop; lists of channels are long
     char file[512];     // "" when no file is concerned
     char channel[256];  // "" when no channel is concerned
+    int refused;        // errno of the system call that failed, where what the file holds may be right; else 0
 } error;
 
 // Fills *e (unless it holds an error already, or is NULL) and returns false, so that `return err_set(...)` reads well.
 // file and channel may be NULL.
 bool err_set(error *e, error_code code, const char *file, const char *channel, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
+
+// err_set, and says that it was the system that refused: `number` is errno's value, which the message ends with.
+bool err_set_system(error *e, error_code code, int number, const char *file, const char *what);
 
 enum { ERROR_TEXT = 4096 + 512 + 256 + 64 }; // room for all of it
 

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -14,10 +15,17 @@ static bool refuse(const char *path, infile_kind k, const char *verb, const char
     return err_set(e, k.code, path, NULL, "%s%s%s%s", k.what ? k.what : "", k.what ? " " : "", verb, detail);
 }
 
+static bool refuse_call(const char *path, infile_kind k, const char *verb, int code, error *e)
+{
+    char what[128];
+    snprintf(what, sizeof what, "%s%s%s", k.what ? k.what : "", k.what ? " " : "", verb);
+    return err_set_system(e, k.code, code, path, what);
+}
+
 static bool refuse_errno(const char *path, infile_kind k, int code, error *e)
 {
-    if (code == ENOENT) return refuse(path, k, "does not exist; check the name", "", e);
-    return refuse(path, k, "cannot be opened: ", strerror(code), e);
+    if (code == ENOENT || code == ENOTDIR) return refuse(path, k, "does not exist; check the name", "", e);
+    return refuse_call(path, k, "cannot be opened", code, e);
 }
 
 static const char *kind_of(mode_t mode)
@@ -61,6 +69,15 @@ bool infile_check(const char *path, infile_kind k, error *e)
     return fd >= 0;
 }
 
+bool infile_exists(const char *path, infile_kind k, bool *there, error *e)
+{
+    struct stat s;
+    bool found = stat(path, &s) == 0;
+    if (!found && errno != ENOENT && errno != ENOTDIR) return refuse_errno(path, k, errno, e);
+    *there = found;
+    return true;
+}
+
 size_t infile_read_at(int fd, void *to, size_t n, size_t offset)
 {
     size_t done = 0;
@@ -86,7 +103,10 @@ char *infile_text(const char *path, infile_kind k, size_t most, size_t *length, 
     if (size > most) {
         refuse(path, k, "is larger than such a file is; check the name", "", e);
     } else if ((text = mem_grow(NULL, size + 1, 1, e)) && infile_read_at(fd, text, size, 0) != size) {
-        refuse(path, k, "cannot be read: ", errno ? strerror(errno) : "it became shorter meanwhile", e);
+        if (errno)
+            refuse_call(path, k, "cannot be read", errno, e);
+        else
+            refuse(path, k, "cannot be read: it became shorter meanwhile", "", e);
         free(text);
         text = NULL;
     }

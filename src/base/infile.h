@@ -24,6 +24,10 @@ int infile_open(const char *path, infile_kind kind, size_t *size, error *e);
 // Whether infile_open would succeed: for a file that a library opens by its name.
 bool infile_check(const char *path, infile_kind kind, error *e);
 
+// Whether there is a file of this name, of any kind. That the system does not say is an error and no answer: `there` is set only
+// where the function returns true.
+bool infile_exists(const char *path, infile_kind kind, bool *there, error *e);
+
 // The whole file and a final 0, which the caller frees; NULL with an error, also where it has more than `most` bytes. `length`
 // may be NULL.
 char *infile_text(const char *path, infile_kind kind, size_t most, size_t *length, error *e);

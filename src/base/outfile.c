@@ -57,16 +57,25 @@ static size_t folder_length(const char *path)
     return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
-// The path the file will really have: a symbolic link is followed, so that it is not replaced by a plain file.
-static char *resolve_target(const char *path, error *e)
+static char *refuse_look(char *target, const char *path, error *e)
+{
+    err_set_system(e, ERR_OUTPUT, errno, path, "cannot be looked at");
+    free(target);
+    return NULL;
+}
+
+char *outfile_target(const char *path, error *e)
 {
     enum { MOST_LINKS = 40 };
     char *target = realpath(path, NULL), to[PATH_MAX];
     if (target) return target;
+    if (errno == ENOMEM) return err_set(e, ERR_MEMORY, path, NULL, "out of memory"), NULL;
+    if (errno != ENOENT && errno != ENOTDIR) return refuse_look(NULL, path, e);
     // Links to a file that is not there yet.
     target = mem_string(path, e);
     for (int i = 0; target && i < MOST_LINKS; i++) {
         ssize_t n = readlink(target, to, sizeof to - 1);
+        if (n < 0 && errno != EINVAL && errno != ENOENT && errno != ENOTDIR) return refuse_look(target, path, e);
         if (n <= 0) break;
         size_t folder = to[0] == '/' ? 0 : folder_length(target), size = folder + (size_t)n + 1;
         char *next = mem_zero(size, 1, e);
@@ -153,7 +162,8 @@ static void remove_abandoned(const char *target, const char *beginning)
 static bool check_target(const char *path, const char *target, mode_t *mode, error *e)
 {
     struct stat st;
-    if (stat(target, &st) != 0) return true;
+    if (stat(target, &st) != 0)
+        return errno == ENOENT || errno == ENOTDIR || err_set_system(e, ERR_OUTPUT, errno, path, "cannot be looked at");
     if (S_ISDIR(st.st_mode)) return err_set(e, ERR_OUTPUT, path, NULL, "the output is a folder; name a file in it");
     if (!S_ISREG(st.st_mode))
         return err_set(e, ERR_OUTPUT, path, NULL, "the output is not a regular file, and a file is only ever replaced whole");
@@ -170,7 +180,7 @@ static bool report_folder(const char *path, const char *target, int code, error 
 
 bool outfile_check_folder(const char *path, error *e)
 {
-    char folder[PATH_MAX] = ".", *target = resolve_target(path, e);
+    char folder[PATH_MAX] = ".", *target = outfile_target(path, e);
     if (!target) return false;
     size_t n = folder_length(target);
     if (n && n < sizeof folder) snprintf(folder, sizeof folder, "%.*s", (int)n, target);
@@ -182,7 +192,7 @@ bool outfile_check_folder(const char *path, error *e)
 
 void outfile_tidy(const char *path)
 {
-    char beginning[256], *target = resolve_target(path, NULL);
+    char beginning[256], *target = outfile_target(path, NULL);
     if (!target) return;
     temp_beginning(target, beginning, sizeof beginning);
     remove_abandoned(target, beginning);
@@ -194,7 +204,7 @@ bool outfile_begin(const char *path, outfile *out, error *e)
     *out = OUTFILE_NONE;
     mode_t mode = 0;
     char beginning[256];
-    out->target = resolve_target(path, e);
+    out->target = outfile_target(path, e);
     if (!out->target || !check_target(path, out->target, &mode, e)) goto fail;
     temp_beginning(out->target, beginning, sizeof beginning);
     remove_abandoned(out->target, beginning);

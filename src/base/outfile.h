@@ -35,6 +35,10 @@ bool outfile_begin(const char *path, outfile *out, error *e);
 // Puts bytes at an offset; false (and `code`) when the system does not take all of them. One thread at a time.
 bool outfile_put(outfile *out, const void *bytes, size_t size, uint64_t offset);
 
+// The path that the file will really have, which the caller frees: links are followed, so that a link is not replaced by a plain
+// file. ERR_OUTPUT where the system does not say.
+char *outfile_target(const char *path, error *e);
+
 // A whole file out of memory: begin, put, commit.
 bool outfile_write(const char *path, const void *bytes, size_t size, error *e);
 

@@ -216,6 +216,18 @@ static bool match(const char *name, const char *pattern_name, const place *p, in
     return true;
 }
 
+// A listing that ends early would be another sequence.
+static bool list_folder(DIR *d, const char *folder, const char *pattern_name, const place *p, frame_list *out, error *e)
+{
+    for (;;) {
+        int frame;
+        errno = 0;
+        struct dirent *entry = readdir(d);
+        if (!entry) return !errno || err_set_system(e, ERR_INPUT, errno, folder, "the folder cannot be read");
+        if (match(entry->d_name, pattern_name, p, &frame) && !add(out, frame, e)) return false;
+    }
+}
+
 bool pattern_scan(const char *pattern, frame_list *out, error *e)
 {
     place p;
@@ -228,12 +240,12 @@ bool pattern_scan(const char *pattern, frame_list *out, error *e)
     p.begin -= skip;
     p.end -= skip;
     DIR *d = opendir(folder);
-    bool ok = true;
-    for (struct dirent *entry; d && ok && (entry = readdir(d));) {
-        int frame;
-        if (match(entry->d_name, pattern + skip, &p, &frame)) ok = add(out, frame, e);
+    bool ok =
+        d || errno == ENOENT || errno == ENOTDIR || err_set_system(e, ERR_INPUT, errno, folder, "the folder cannot be read");
+    if (d) {
+        ok = list_folder(d, folder, pattern + skip, &p, out, e);
+        closedir(d);
     }
-    if (d) closedir(d);
     if (!ok) frames_free(out);
     if (out->count) qsort(out->frames, (size_t)out->count, sizeof *out->frames, by_frame);
     return ok;

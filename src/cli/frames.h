@@ -30,7 +30,8 @@ void frames_format(const frame_list *l, char *out, size_t size);
 bool pattern_is(const char *path);
 // The path of one frame. False if it does not fit.
 bool pattern_path(const char *pattern, int frame, char *out, size_t size);
-// The frames whose files exist, in rising order; an empty list is no error here.
+// The frames whose files exist, in rising order; an empty list is no error here, and neither is a folder that does
+// not exist; ERR_INPUT for one that cannot be read.
 bool pattern_scan(const char *pattern, frame_list *out, error *e);
 
 #endif

@@ -6,6 +6,7 @@
 #include <strings.h>
 #include <unistd.h>
 
+#include "base/infile.h"
 #include "cli/frames.h"
 
 static bool digits(const char *from, const char *to)
@@ -29,19 +30,26 @@ bool names_are_frames(const char *a, const char *b, char *pattern, size_t size)
     return true;
 }
 
-static bool any_fits(const char *pattern)
+static bool any_fits(const char *pattern, bool *any, error *e)
 {
     frame_list found;
-    error ignored = {0};
-    bool any = pattern_scan(pattern, &found, &ignored) && found.count > 0;
+    if (!pattern_scan(pattern, &found, e)) return false;
+    *any = found.count > 0;
     frames_free(&found);
-    return any;
+    return true;
 }
 
-bool names_are_literal(const options *o)
+bool names_are_literal(const options *o, bool *literal, error *e)
 {
-    if (o->frames || o->input_count == 0 || !pattern_is(o->inputs[0]) || access(o->inputs[0], F_OK) != 0) return false;
-    return (o->output && !pattern_is(o->output)) || !any_fits(o->inputs[0]);
+    bool there = false, any = true;
+    *literal = false;
+    if (o->frames || o->input_count == 0 || !pattern_is(o->inputs[0])) return true;
+    if (!infile_exists(o->inputs[0], (infile_kind){NULL, ERR_INPUT}, &there, e)) return false;
+    *literal = there && o->output && !pattern_is(o->output);
+    if (!there || *literal) return true;
+    if (!any_fits(o->inputs[0], &any, e)) return false;
+    *literal = !any;
+    return true;
 }
 
 static const char *ending_of(const char *path)

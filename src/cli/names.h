@@ -16,7 +16,8 @@ bool names_are_frames(const char *a, const char *b, char *pattern, size_t size);
 
 // Whether the first input is a file of exactly its name although it holds a place for the frame ("shot #1.exr"): there is such a
 // file, and no frames are asked for, and no file fits the pattern or the output has no place for the frame.
-bool names_are_literal(const options *o);
+// ERR_INPUT where the system does not say.
+bool names_are_literal(const options *o, bool *literal, error *e);
 
 // Refuses an output that names another image format ("out.png"); ERR_USAGE says what to do.
 bool names_check_output(const char *output, error *e);

@@ -218,7 +218,7 @@ const option_row option_rows[] = {
      .help = "Go on with the next frame when one fails. The exit status is 1 in the end, and the frames that failed are listed."},
     {.group = GROUP_RUN, .name = "radius-from", .argument = "FRAME", .kind = OPT_INT, .offset = FIELD(radius_from),
      .min = -1e8, .max = 1e8, .pixels = true, .fallback = "the lowest-numbered existing file",
-     .help = "Frame of the sequence on which the automatic radius is measured, so that all frames have the same. Where the lowest frame cannot be read, --keep-going takes the next that can."},
+     .help = "Frame of the sequence on which the automatic radius is measured, so that all frames have the same. Where the lowest frame is damaged, --keep-going takes the next that is not; one that the system refuses to read stops the run, for another machine may be allowed to."},
     {.group = GROUP_RUN, .name = "progress", .argument = "auto|plain|alf|openjd|none", .kind = OPT_ENUM, .offset = FIELD(progress),
      .words = WORDS({"auto", PROGRESS_AUTO}, {"plain", PROGRESS_PLAIN}, {"alf", PROGRESS_ALF}, {"openjd", PROGRESS_OPENJD}, {"none", PROGRESS_NONE}),
      .fallback = "auto",

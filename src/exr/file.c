@@ -31,6 +31,7 @@ void core_log_arm(core_log *log)
 {
     pthread_mutex_lock(&log->lock);
     memset(log->text, 0, sizeof log->text);
+    log->refused = 0;
     log->armed = true;
     pthread_mutex_unlock(&log->lock);
 }
@@ -42,6 +43,8 @@ bool core_log_report(core_log *log, exr_result_t code, error_code kind, const ch
     const char *text = log->text[0] ? log->text : exr_get_default_error_message(code);
     if (code == EXR_ERR_OUT_OF_MEMORY)
         err_set(e, ERR_MEMORY, path, NULL, "out of memory; try fewer threads or frames in flight");
+    else if (log->refused)
+        err_set_system(e, kind, log->refused, path, "cannot be read");
     else
         err_set(e, kind, path, NULL, "%s (%s)", what, text);
     pthread_mutex_unlock(&log->lock);
@@ -84,12 +87,16 @@ static void put_restored(const exrio_reader *r, uint8_t *bytes, uint64_t got, ui
 static int64_t read_bytes(exr_const_context_t context, void *user, void *buffer, uint64_t size, uint64_t offset,
                           exr_stream_error_func_ptr_t report)
 {
-    const exrio_reader *r = user;
+    exrio_reader *r = user;
     size_t got = infile_read_at(r->fd, buffer, size, offset);
     hide_deep_flag(buffer, got, offset);
     if (r->restored) put_restored(r, buffer, got, offset);
-    if (!errno) return (int64_t)got; // the library knows what it needs
-    report(context, EXR_ERR_READ_IO, "%s", strerror(errno));
+    int refused = errno;
+    if (!refused) return (int64_t)got; // the library knows what it needs
+    pthread_mutex_lock(&r->log.lock);
+    if (!r->log.refused) r->log.refused = refused;
+    pthread_mutex_unlock(&r->log.lock);
+    report(context, EXR_ERR_READ_IO, "%s", strerror(refused));
     return -1;
 }
 

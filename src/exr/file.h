@@ -65,8 +65,9 @@ typedef struct exrio_file {
     int member_count;
 } exrio_file;
 
-// The bytes of a file's headers and its first chunk table, 0 for a file that is no OpenEXR file.
-uint64_t exrio_head_bytes(const char *path);
+// The bytes of an open file's headers and its first chunk table, 0 for a file that is no OpenEXR file. False with an error if the
+// system refuses to read them.
+bool exrio_head_bytes(const char *path, int fd, size_t size, uint64_t *head, error *e);
 
 // Opens and checks the headers of all parts; reads no pixels. On failure *out is NULL and e names the file.
 bool exrio_file_open(const char *path, exrio_file **out, error *e);

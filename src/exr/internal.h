@@ -27,6 +27,7 @@ typedef struct core_log {
     pthread_mutex_t lock;
     bool armed;
     char text[256];
+    int refused; // errno of the first read that the system refused
 } core_log;
 
 // What exrio_file_open allocates; the public part comes first.
@@ -41,8 +42,8 @@ typedef struct exrio_reader {
 } exrio_reader;
 
 void core_log_arm(core_log *log);
-// Stops listening and reports `code`: an allocation failure as ERR_MEMORY, anything else as `kind` with `what` in front of the
-// library's own words. Returns false.
+// Stops listening and reports `code`: an allocation failure as ERR_MEMORY, a read that the system refused by its
+// number, anything else as `kind` with `what` in front of the library's own words. Returns false.
 bool core_log_report(core_log *log, exr_result_t code, error_code kind, const char *path, const char *what, error *e);
 
 // Walks the headers of an open file of `size` bytes without the library: the magic number, version and flags, every name and
@@ -53,7 +54,8 @@ bool exrio_check_header(const char *path, int fd, size_t size, uint64_t *end, er
 // For an open file whose parts are known: where a part's chunk table is all zero, as exrmultipart of OpenEXR 3.2 and later leaves
 // it, the chunks are looked up one after the other, once, and the library is given a table of them. A table is made only if every
 // chunk of the file is there, whole and once; else, and where a part is deep or has several levels, it stays as it is and the
-// file is refused when its pixels are read. False only when memory runs out.
+// file is refused when its pixels are read. False only when memory runs out or
+// the system refuses to read.
 bool exrio_restore_tables(exrio_reader *r, error *e);
 
 // Fills the views of a part whose channels are known, and the view of each channel.

@@ -1,4 +1,5 @@
 // Chunk tables and leaders: OpenEXR File Layout, https://openexr.com/en/latest/OpenEXRFileLayout.html
+#include <errno.h>
 #include <stdlib.h>
 
 #include "base/infile.h"
@@ -21,6 +22,7 @@ typedef struct restorer {
     uint8_t *entries; // the tables of all parts
     size_t count;     // of entries
     bool numbered;    // each chunk says its part
+    int refused;      // errno of the first read that the system refused
 } restorer;
 
 static uint32_t u32_at(const uint8_t *b)
@@ -59,13 +61,20 @@ static bool lay_out(restorer *s)
     return s->r->tables <= s->r->size && s->count <= (s->r->size - s->r->tables) / ENTRY;
 }
 
+static size_t get(restorer *s, void *to, size_t n, uint64_t offset)
+{
+    size_t got = infile_read_at(s->r->fd, to, n, offset);
+    if (errno && !s->refused) s->refused = errno;
+    return got;
+}
+
 // Most files are known to be whole by one entry of each part.
-static bool begins_with_zero(const restorer *s)
+static bool begins_with_zero(restorer *s)
 {
     uint8_t entry[ENTRY];
     for (int i = 0; i < s->r->file.part_count; i++) {
         uint64_t at = s->r->tables + ENTRY * s->parts[i].first;
-        if (infile_read_at(s->r->fd, entry, ENTRY, at) == ENTRY && is_zero(entry, ENTRY)) return true;
+        if (get(s, entry, ENTRY, at) == ENTRY && is_zero(entry, ENTRY)) return true;
     }
     return false;
 }
@@ -73,7 +82,7 @@ static bool begins_with_zero(const restorer *s)
 static bool find_lost(restorer *s)
 {
     bool any = false;
-    if (infile_read_at(s->r->fd, s->entries, ENTRY * s->count, s->r->tables) != ENTRY * s->count) return false;
+    if (get(s, s->entries, ENTRY * s->count, s->r->tables) != ENTRY * s->count) return false;
     for (int i = 0; i < s->r->file.part_count; i++) {
         part_table *t = &s->parts[i];
         t->lost = is_zero(s->entries + ENTRY * t->first, ENTRY * t->count);
@@ -103,7 +112,7 @@ static bool take_chunk(restorer *s, uint64_t *at)
 {
     uint8_t leader[LEADER] = {0};
     if (*at >= s->r->size) return false;
-    size_t got = infile_read_at(s->r->fd, leader, LEADER, *at);
+    size_t got = get(s, leader, LEADER, *at);
     uint32_t part = s->numbered ? u32_at(leader) : 0;
     if (part >= (uint32_t)s->r->file.part_count) return false;
     const uint8_t *place = leader + (s->numbered ? 4 : 0), *size = place + (s->parts[part].lines ? 4 : 16);
@@ -137,7 +146,7 @@ bool exrio_restore_tables(exrio_reader *r, error *e)
     s.parts = mem_zero((size_t)r->file.part_count, sizeof *s.parts, e);
     if (!s.parts) goto out;
     ok = true;
-    s.numbered = infile_read_at(r->fd, &flags, 1, 5) == 1 && flags & 0x10; // of the version field: multi-part
+    s.numbered = get(&s, &flags, 1, 5) == 1 && flags & 0x10; // of the version field: multi-part
     if (!lay_out(&s) || !begins_with_zero(&s)) goto out;
     s.entries = mem_zero(s.count, ENTRY, e);
     ok = s.entries != NULL;
@@ -145,6 +154,7 @@ bool exrio_restore_tables(exrio_reader *r, error *e)
     r->restored = s.entries, r->restored_size = ENTRY * s.count;
     s.entries = NULL;
 out:
+    if (s.refused) ok = err_set_system(e, ERR_INPUT, s.refused, r->file.path, "cannot be read");
     free(s.parts);
     free(s.entries);
     return ok;

@@ -74,8 +74,8 @@ static bool take(walker *w, void *to, size_t n)
     if (w->size - w->at < n) return fail(w, "is truncated: its header ends early");
     bool there = w->at >= w->first && w->at + n <= w->first + w->filled;
     if (!there && !turn_page(w))
-        return err_set(w->e, ERR_INPUT, w->path, NULL, "cannot be read: %s",
-                       errno ? strerror(errno) : "it became shorter meanwhile");
+        return errno ? err_set_system(w->e, ERR_INPUT, errno, w->path, "cannot be read")
+                     : err_set(w->e, ERR_INPUT, w->path, NULL, "cannot be read: it became shorter meanwhile");
     memcpy(to, w->page + (w->at - w->first), n);
     w->at += n;
     return true;
@@ -231,18 +231,16 @@ bool exrio_check_header(const char *path, int fd, size_t size, uint64_t *end, er
 }
 
 // The table begins with the offset of a chunk, which lies behind it.
-uint64_t exrio_head_bytes(const char *path)
+bool exrio_head_bytes(const char *path, int fd, size_t size, uint64_t *head, error *e)
 {
     enum { MOST = 1 << 26 };
-    error ignored = {0};
-    size_t size = 0;
+    error why = {0};
     uint64_t first = 0;
     uint8_t b[8] = {0};
-    int fd = infile_open(path, (infile_kind){NULL, ERR_INPUT}, &size, &ignored);
-    if (fd < 0) return 0;
-    walker w = {.fd = fd, .path = path, .size = size, .e = &ignored};
+    walker w = {.fd = fd, .path = path, .size = size, .e = &why};
     if (check_stream(&w) && take(&w, b, sizeof b))
         for (int i = 7; i >= 0; i--) first = first << 8 | b[i];
-    close(fd);
-    return first > w.at && first < w.size && first - w.at < MOST ? first : w.at;
+    if (why.refused) return err_set_system(e, ERR_INPUT, why.refused, path, "cannot be read");
+    *head = first > w.at && first < w.size && first - w.at < MOST ? first : w.at;
+    return true;
 }

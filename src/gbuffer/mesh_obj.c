@@ -141,7 +141,7 @@ static bool read_face(reader *r, char *rest)
     return true;
 }
 
-// Missing colours are no reason to stop.
+// Missing colours are no reason to stop; that the system does not let us look for them is.
 static bool use_library(reader *r, const char *name)
 {
     char path[4096];
@@ -149,6 +149,7 @@ static bool use_library(reader *r, const char *name)
     mesh_library_path(r->path, name, path, sizeof path);
     if (mesh_read_mtl(path, &r->materials, &e)) return true;
     if (e.code == ERR_MEMORY) return err_set(r->e, e.code, NULL, NULL, "%s", e.message);
+    if (e.refused) return err_set_system(r->e, ERR_INPUT, e.refused, path, "the material file cannot be read");
     if (r->log) log_warn(r->log, path, "%s: %s; surfaces without a colour reflect %g", path, e.message, (double)MESH_GREY);
     return true;
 }

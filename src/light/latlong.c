@@ -1,5 +1,6 @@
 #include "light/latlong.h"
 
+#include <errno.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,7 +61,9 @@ static bool is_exr(const char *path, bool *exr, error *e)
     int fd = infile_open(path, (infile_kind){"the environment map", ERR_INPUT}, NULL, e);
     if (fd < 0) return false;
     size_t n = infile_read_at(fd, first, sizeof first, 0);
+    int refused = errno;
     close(fd);
+    if (refused) return err_set_system(e, ERR_INPUT, refused, path, "the environment map cannot be read");
     if (n == 0) return err_set(e, ERR_INPUT, path, NULL, "the environment map is empty; give a lat-long image");
     *exr = memcmp(first, magic, sizeof magic) == 0;
     return true;

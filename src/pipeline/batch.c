@@ -304,7 +304,7 @@ static bool measure_radius(job *j, int frame, error *e)
 }
 
 // The lowest-numbered existing frame serves; with --keep-going the next one that can be read. Every task of a farm sees the same
-// files, and so finds the same.
+// files, and so finds the same; what the system refuses here it may allow elsewhere, so that stops the run.
 static bool measure_lowest(job *j, const frame_list *existing, error *e)
 {
     char why[1600];
@@ -319,14 +319,15 @@ static bool measure_lowest(job *j, const frame_list *existing, error *e)
         }
         if (i == 0) first = here;
         if (i == 0) err_format(&here, why, sizeof why);
-        if (here.code != ERR_INPUT || !j->o->keep_going) break;
+        if (here.refused) first = here;
+        if (here.code != ERR_INPUT || here.refused || !j->o->keep_going) break;
     }
     if (first.code != ERR_INPUT)
         *e = first;
     else
         err_set(e, first.code, first.file, first.channel,
                 "%s. The automatic radius of the sequence is measured on this frame; --radius-from names another%s",
-                first.message, j->o->keep_going ? "" : ", --keep-going takes the next one that can be read");
+                first.message, j->o->keep_going || first.refused ? "" : ", --keep-going takes the next one that can be read");
     return false;
 }
 

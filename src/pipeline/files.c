@@ -1,14 +1,16 @@
 #include "pipeline/files.h"
 
+#include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "base/digest.h"
+#include "base/infile.h"
 #include "base/mem.h"
+#include "base/outfile.h"
 #include "cli/frames.h"
 #include "exr/file.h"
 #include "gbuffer/mesh.h"
@@ -17,7 +19,15 @@
 
 // --- the table ---
 
-bool proxies_are_framed(const options *o) { return o->proxies && pattern_is(o->proxies) && access(o->proxies, R_OK) != 0; }
+bool proxies_are_framed(const options *o, bool *framed, error *e)
+{
+    bool there = true;
+    if (o->proxies && pattern_is(o->proxies) &&
+        !infile_exists(o->proxies, (infile_kind){"the proxies file", ERR_USAGE}, &there, e))
+        return false;
+    *framed = !there;
+    return true;
+}
 
 static bool add(run_files *f, run_file file, error *e)
 {
@@ -33,8 +43,10 @@ static bool add(run_files *f, run_file file, error *e)
 static bool add_materials(const options *o, run_files *f, error *e)
 {
     error ignored = {0};
-    if (!o->mesh || !mesh_list_libraries(o->mesh, &f->owned, &f->owned_count, &ignored))
-        return ignored.code != ERR_MEMORY || err_set(e, ERR_MEMORY, o->mesh, NULL, "%s", ignored.message);
+    if (!o->mesh || !mesh_list_libraries(o->mesh, &f->owned, &f->owned_count, &ignored)) {
+        if (ignored.refused || ignored.code == ERR_MEMORY) *e = ignored;
+        return !ignored.refused && ignored.code != ERR_MEMORY;
+    }
     for (int i = 0; i < f->owned_count; i++)
         if (!add(f, (run_file){.what = "a material file of --mesh", .path = f->owned[i], .decides = true, .once = true}, e))
             return false;
@@ -43,11 +55,13 @@ static bool add_materials(const options *o, run_files *f, error *e)
 
 bool run_files_list(const options *o, run_files *out, error *e)
 {
-    bool many = batch_is(o), converts = o->env_colorspace || o->albedo_colorspace;
+    bool framed = false, many = batch_is(o), converts = o->env_colorspace || o->albedo_colorspace;
+    *out = (run_files){0};
+    if (!proxies_are_framed(o, &framed, e)) return false;
     const run_file others[] = {
         {.what = "--env", .path = o->env, .decides = true, .once = true},
         {.what = "--camera", .path = o->camera_file, .decides = true},
-        {.what = "--proxies", .path = o->proxies, .decides = true, .framed = proxies_are_framed(o)},
+        {.what = "--proxies", .path = o->proxies, .decides = true, .framed = framed},
         {.what = "--mesh", .path = o->mesh, .decides = true, .once = true},
         {.what = "the OpenColorIO config",
          .path = colour_config(o->ocio),
@@ -58,7 +72,6 @@ bool run_files_list(const options *o, run_files *out, error *e)
         {.what = "the preview", .path = o->preview, .kind = FILE_PREVIEW, .framed = many, .every = many ? o->preview_every : 1},
         {.what = "the report", .path = o->report, .kind = FILE_REPORT, .framed = many && o->report && pattern_is(o->report)},
     };
-    *out = (run_files){0};
     bool ok = true;
     for (int i = 0; ok && i < o->input_count; i++) {
         const run_file input = {
@@ -71,14 +84,18 @@ bool run_files_list(const options *o, run_files *out, error *e)
     return ok;
 }
 
-void run_files_read(run_files *files, bool exact)
+bool run_files_read(run_files *files, bool exact, error *e)
 {
     for (int i = 0; i < files->count; i++) {
         run_file *f = &files->list[i];
         if (!f->once) continue;
-        f->content = content_read(f->path, exrio_head_bytes(f->path), exact);
         f->known = true;
+        if (!content_read(f->path, exrio_head_bytes, exact, &f->content, &f->refusal) && f->refusal.code == ERR_MEMORY) {
+            *e = f->refusal;
+            return false;
+        }
     }
+    return true;
 }
 
 void run_files_free(run_files *files)
@@ -105,20 +122,43 @@ typedef struct identity {
     int file, frame;
 } identity;
 
-static identity identify(const char *path)
+// An answer that the system does not give is no licence to write.
+static bool look(const char *path, struct stat *s, bool *there, error_code code, error *e)
 {
-    identity id = {0};
+    *there = stat(path, s) == 0;
+    return *there || errno == ENOENT || errno == ENOTDIR || err_set_system(e, code, errno, path, "cannot be looked at");
+}
+
+// Of a file that is still to be made.
+static bool identify_new(const char *target, identity *id, error_code code, error *e)
+{
     struct stat s;
+    bool there;
     char folder[FILE_PATH] = ".";
-    if (stat(path, &s) == 0) return (identity){.device = s.st_dev, .inode = s.st_ino};
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
-    if (slash) snprintf(folder, sizeof folder, "%.*s", (int)(slash - path) + 1, path);
-    if (stat(folder, &s) == 0)
-        id = (identity){.device = s.st_dev, .inode = s.st_ino};
+    const char *slash = strrchr(target, '/'), *name = slash ? slash + 1 : target;
+    if (slash) snprintf(folder, sizeof folder, "%.*s", (int)(slash - target) + 1, target);
+    if (!look(folder, &s, &there, code, e)) return false;
+    if (there)
+        *id = (identity){.device = s.st_dev, .inode = s.st_ino};
     else
-        name = path;
-    id.name = digest_bytes(name, strlen(name));
-    return id;
+        name = target;
+    id->name = digest_bytes(name, strlen(name));
+    return true;
+}
+
+static bool identify(const char *path, identity *id, error_code code, error *e)
+{
+    struct stat s;
+    bool there;
+    if (!look(path, &s, &there, code, e)) return false;
+    if (there) {
+        *id = (identity){.device = s.st_dev, .inode = s.st_ino};
+        return true;
+    }
+    char *target = outfile_target(path, e); // a link may point at what will be made under another name
+    bool ok = target && identify_new(target, id, code, e);
+    free(target);
+    return ok;
 }
 
 static int compare(const identity *x, const identity *y)
@@ -138,20 +178,21 @@ static int by_identity(const void *a, const void *b)
     return (x->frame > y->frame) - (x->frame < y->frame);
 }
 
-static size_t identify_all(const run_files *files, const int *frames, int frame_count, identity *out)
+static bool identify_all(const run_files *files, const int *frames, int frame_count, identity *out, size_t *n, error *e)
 {
     char path[FILE_PATH];
-    size_t n = 0;
     for (int f = 0; f < files->count; f++) {
-        int count = files->list[f].framed ? frame_count : frame_count > 0;
+        const run_file *file = &files->list[f];
+        int count = file->framed ? frame_count : frame_count > 0;
         for (int i = 0; i < count; i++) {
-            if (!run_file_path(&files->list[f], files->list[f].framed ? frames[i] : 0, path, sizeof path)) continue;
-            out[n] = identify(path);
-            out[n].file = f, out[n].frame = frames[i];
-            n++;
+            identity *id = &out[*n];
+            if (!run_file_path(file, file->framed ? frames[i] : 0, path, sizeof path)) continue;
+            if (!identify(path, id, file->kind >= FILE_OUTPUT ? ERR_OUTPUT : ERR_INPUT, e)) return false;
+            id->file = f, id->frame = frames[i];
+            ++*n;
         }
     }
-    return n;
+    return true;
 }
 
 static bool is_target(const run_files *files, const identity *id) { return files->list[id->file].kind >= FILE_OUTPUT; }
@@ -171,7 +212,8 @@ bool run_files_check(const run_files *files, const int *frames, int frame_count,
     const identity *worst = NULL, *as = NULL; // of the lowest frame, so that the message does not change from run to run
     identity *all = mem_zero((size_t)files->count * (size_t)frame_count + 1, sizeof *all, e);
     if (!all) return false;
-    size_t n = identify_all(files, frames, frame_count, all);
+    size_t n = 0;
+    bool ok = identify_all(files, frames, frame_count, all, &n, e);
     qsort(all, n, sizeof *all, by_identity);
     for (size_t first = 0, target = 0, i = 0; i < n; i++) {
         if (compare(&all[first], &all[i]) != 0) first = target = i;
@@ -180,7 +222,7 @@ bool run_files_check(const run_files *files, const int *frames, int frame_count,
         worst = &all[target];
         as = &all[target == i ? first : i];
     }
-    bool ok = !worst || refuse(files, as, worst, e);
+    ok = ok && (!worst || refuse(files, as, worst, e));
     free(all);
     return ok;
 }

@@ -22,6 +22,7 @@ typedef struct run_file {
     int every;        // of frames whose number is a multiple of this
     bool known;       // `content` is that of the whole run
     content content;
+    error refusal; // of the system, to look into it: `content` is zero
 } run_file;
 
 typedef struct run_files {
@@ -31,22 +32,23 @@ typedef struct run_files {
     int owned_count;
 } run_files;
 
-// Lists inputs, environment, camera, proxies, mesh and its material files, OpenColorIO config, output, preview and report. A mesh
-// that cannot be read has no material files here; reading it says why.
+// ERR_INPUT where the system does not say what is there. Lists inputs, environment, camera, proxies, mesh and its material files,
+// OpenColorIO config, output, preview and report. A mesh that cannot be read has no material files here; reading it says why.
 bool run_files_list(const options *o, run_files *out, error *e);
 void run_files_free(run_files *files);
 
-// Looks into the files that are read once for all frames.
-void run_files_read(run_files *files, bool exact);
+// Looks into the files that are read once for all frames; false with ERR_MEMORY. That the system refuses one is kept with it.
+bool run_files_read(run_files *files, bool exact, error *e);
 
 // The file's path in a frame. False if it has none there, or one that does not fit.
 bool run_file_path(const run_file *file, int frame, char *path, size_t size);
 
 // Compares, for all frames at once, every file that will be written with every other file, through links and under whatever
-// names: ERR_USAGE if what is written to is read, or written twice. frames: of a sequence; a single frame has one, of any number.
+// names: ERR_USAGE if what is written to is read, or written twice; ERR_INPUT where the system does not say. frames: of a
+// sequence; a single frame has one, of any number.
 bool run_files_check(const run_files *files, const int *frames, int frame_count, error *e);
 
-// True if --proxies names a file a frame.
-bool proxies_are_framed(const options *o);
+// Whether --proxies names a file a frame. ERR_INPUT where the system does not say whether there is a file of exactly its name.
+bool proxies_are_framed(const options *o, bool *framed, error *e);
 
 #endif

@@ -292,7 +292,8 @@ static bool load_proxies(const job *j, frame_result *r, error *e)
     if (!r->gb.camera.has_world && r->gb.valid > 0)
         return err_set(e, ERR_INPUT, r->file->path, NULL,
                        "--proxies are in world space, and this frame's camera is not known there; give it with --camera FILE");
-    bool many = proxies_are_framed(j->o);
+    bool many = false;
+    if (!proxies_are_framed(j->o, &many, e)) return false;
     if (many && !pattern_path(j->o->proxies, r->frame, path, sizeof path))
         return err_set(e, ERR_USAGE, j->o->proxies, NULL, "--proxies: frame %d has no file name by this pattern", r->frame);
     return proxies_load(many ? path : j->o->proxies, &r->proxies, e);
@@ -361,7 +362,7 @@ bool frame_filter(job *j, frame_result *r, error *e)
 bool frame_write(const job *j, frame_result *r, const char *output, error *e)
 {
     stopwatch t = stopwatch_start();
-    if (!output_write(j, r, output, e)) return false;
+    if (!record_check(&r->record, e) || !output_write(j, r, output, e)) return false;
     lap(r, STAGE_WRITE, &t);
     if (r->clamped)
         log_warn(j->log, "clamped", "%zu samples were beyond what half can hold and were clamped; --float keeps them",

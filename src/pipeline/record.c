@@ -12,14 +12,16 @@
 #include "pipeline/frame.h"
 
 // Shaders that stand in for those of the program.
-static void put_shader_folder(digester *d, const char *folder)
+static bool put_shader_folder(digester *d, const char *folder, error *e)
 {
     char path[FILE_PATH];
+    content c;
     for (const shader_source *s = shader_sources; s->name; s++) {
         snprintf(path, sizeof path, "%s/%s", folder, s->name);
-        content c = content_read(path, 0, false);
+        if (!content_read(path, NULL, false, &c, e)) return false;
         digest_put(d, &c.sampled, sizeof c.sampled);
     }
+    return true;
 }
 
 static bool put_settings(digester *d, const job *j, error *e)
@@ -28,28 +30,30 @@ static bool put_settings(digester *d, const job *j, error *e)
     const char *folder = knob_value("SSDO_SHADER_DIR");
     if (!options_digest(j->o, d, e)) return false;
     digest_put_text(d, ssdo_decides);
-    if (folder) put_shader_folder(d, folder);
+    if (folder && !put_shader_folder(d, folder, e)) return false;
     snprintf(radius, sizeof radius, "%a", (double)(float)j->sequence_radius);
     digest_put_text(d, radius);
     return true;
 }
 
-static content content_in(const run_file *file, int frame, bool exact)
+static bool content_in(const run_file *file, int frame, bool exact, content *out, error *e)
 {
     char path[FILE_PATH];
-    if (file->known) return file->content;
-    if (!run_file_path(file, frame, path, sizeof path)) return (content){0};
-    return content_read(path, exrio_head_bytes(path), exact);
+    *out = file->content;
+    if (file->known && file->refusal.code) *e = file->refusal;
+    if (file->known) return !file->refusal.code;
+    return !run_file_path(file, frame, path, sizeof path) || content_read(path, exrio_head_bytes, exact, out, e);
 }
 
 static bool put_frame(const job *j, int frame, digester *sampled, digester *exact, error *e)
 {
     if (!put_settings(sampled, j, e) || !put_settings(exact, j, e)) return false;
     bool all = j->o->skip_exact;
+    content c;
     for (int i = 0; i < j->files->count; i++) {
         const run_file *file = &j->files->list[i];
         if (!file->decides) continue;
-        content c = content_in(file, frame, all);
+        if (!content_in(file, frame, all, &c, e)) return false;
         digest_put_text(sampled, file->what);
         digest_put(sampled, &c.sampled, sizeof c.sampled);
         digest_put_text(exact, file->what);
@@ -59,36 +63,49 @@ static bool put_frame(const job *j, int frame, digester *sampled, digester *exac
 }
 
 // The frame's, and what previews go through.
-static void put_preview(const job *j, const digest *frame, digester *d)
+static bool put_preview(const job *j, const digest *frame, digester *d, error *e)
 {
+    content c;
     digest_put(d, frame, sizeof *frame);
     digest_put_text(d, j->o->display);
     digest_put_text(d, j->o->view);
     for (int i = 0; i < j->files->count; i++)
         if (j->files->list[i].kind == FILE_COLOURS) {
-            content c = content_in(&j->files->list[i], 0, false);
+            if (!content_in(&j->files->list[i], 0, false, &c, e)) return false;
             digest_put(d, &c.sampled, sizeof c.sampled);
         }
+    return true;
 }
 
 bool record_make(const job *j, int frame, frame_record *out, error *e)
 {
     *out = (frame_record){0};
     if (!j->files) return true;
-    digester *sampled = digest_begin(e), *exact = digest_begin(e), *preview = digest_begin(e);
-    bool ok = sampled && exact && preview && put_frame(j, frame, sampled, exact, e);
-    if (ok) {
-        out->made = true;
+    error why = {0};
+    digester *sampled = digest_begin(&why), *exact = digest_begin(&why), *preview = digest_begin(&why);
+    if (sampled && exact && preview && put_frame(j, frame, sampled, exact, &why)) {
         out->has_exact = j->o->skip_exact;
         out->sampled = digest_of(sampled);
         out->exact = digest_of(exact);
-        put_preview(j, &out->sampled, preview);
+        out->made = put_preview(j, &out->sampled, preview, &why);
         out->preview = digest_of(preview);
     }
     digest_free(sampled);
     digest_free(exact);
     digest_free(preview);
-    return ok;
+    if (out->made) return true;
+    out->refusal = why;
+    if (why.code == ERR_INPUT) return true;
+    *e = why;
+    return false;
+}
+
+bool record_check(const frame_record *r, error *e)
+{
+    if (!r->refusal.code) return true;
+    e->refused = r->refusal.refused;
+    return err_set(e, r->refusal.code, r->refusal.file, NULL,
+                   "%s; the output's record needs its content, so nothing is written: run the frame again", r->refusal.message);
 }
 
 // --- the file's outside ---

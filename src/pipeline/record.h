@@ -20,11 +20,16 @@ typedef struct frame_record {
     bool has_exact;
     digest sampled, exact;
     digest preview; // that of the preview: it depends on the display too
+    error refusal;  // of the system, to look into a file that counts: `made` is false
 } frame_record;
 
-// Before the frame's pixels are read, so that a file that changes meanwhile counts as changed. A file that cannot be read is no
-// error here. Without job->files the record is not made.
+// Before the frame's pixels are read, so that a file that changes meanwhile counts as changed. A file that does not exist, or
+// that the system refuses, is no error here: reading it says more, and record_check what is left. Without job->files the record
+// is not made.
 bool record_make(const struct job *j, int frame, frame_record *out, error *e);
+
+// Before the output is written: ERR_INPUT if a file that counts could be read for its pixels, but not for the record.
+bool record_check(const frame_record *r, error *e);
 
 // What the parts of a file that will be written, or was, look like from outside.
 digest record_layout(const exrio_out_part *parts, int count);

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/infile.h"
 #include "base/outfile.h"
 #include "pipeline/extras.h"
 
@@ -31,11 +32,13 @@ void resume_check_device(const job *j, const char *output)
     exrio_file_close(f);
 }
 
-static bool exist(const char *const *paths, int count)
+// Of a file that the system refuses to look at, reading tells.
+static bool are_missing(const char *const *paths, int count)
 {
-    for (int i = 0; i < count; i++)
-        if (access(paths[i], F_OK) != 0) return false;
-    return true;
+    bool there = true;
+    error ignored = {0};
+    for (int i = 0; i < count && there; i++) (void)infile_exists(paths[i], (infile_kind){NULL, ERR_INPUT}, &there, &ignored);
+    return !there;
 }
 
 // The first part and one of ours say so; what others say is of an earlier run.
@@ -69,7 +72,7 @@ const char *resume_skips(const job *j, int frame, const char *const *inputs, int
                          const frame_record *record)
 {
     const options *o = j->o;
-    if (o->missing_skip && !exist(inputs, count)) return "the input is missing";
+    if (o->missing_skip && are_missing(inputs, count)) return "the input is missing";
     if (!o->skip_existing || !record->made || !extras_are_done(j, frame, record) || !is_done(j, record, output)) return NULL;
     outfile_tidy(output);
     return "already done";

@@ -1,6 +1,7 @@
 #include "plugin/module.h"
 
 #include <dlfcn.h>
+#include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -52,7 +53,7 @@ static void *open_module(const char *folder, const char *file, char *why, size_t
 {
     char path[PATH_MAX + 64];
     snprintf(path, sizeof path, "%s/%s", folder, file);
-    if (access(path, R_OK) != 0) return NULL;
+    if (access(path, F_OK) != 0 && (errno == ENOENT || errno == ENOTDIR)) return NULL; // else loading says what is wrong
     void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (!handle) snprintf(why, why_size, "%s", dlerror());
     return handle;

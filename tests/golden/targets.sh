@@ -19,7 +19,7 @@ printf 'ocio_profile_version: 1\n' >config.ocio
 ln -s in.exr link.exr
 ln in.exr hard.exr
 ln -s f.0003.exr chain && ln -s chain g.0002.exr
-mkdir folder && ln -s . folder/here
+mkdir folder && ln -s . folder/here && ln -s ../new.exr folder/dangling.png && ln -s new.exr chained && ln -s chained dangling
 sha256sum *.exr *.json *.obj *.mtl *.ocio >sums
 tried=0
 # same TEXT ARGS: refused for TEXT, and nothing changed.
@@ -48,6 +48,8 @@ same 'the report and a material file of --mesh are' in.exr -o o.exr --mesh mesh.
 same 'the report and the OpenColorIO config are' in.exr -o o.exr --ocio config.ocio --report config.ocio
 same 'the preview and the output are' in.exr -o new.exr --preview new.exr
 same 'the report and the output are' in.exr -o new.exr --report folder/here/../new.exr
+same 'the preview and the output are' in.exr -o new.exr --preview folder/dangling.png
+same 'the report and the output are' in.exr -o new.exr --report dangling
 same 'the report and the preview are' in.exr -o o.exr --report new.x --preview ./new.x
 same 'the output of frame 1 and the input are' 'f.####.exr' -o 'f.%04d.exr'
 same 'the report of frame 1 and the input are' 'f.####.exr' -o 'o.####.exr' --report 'f.####.exr'
