@@ -1,10 +1,9 @@
 // LD_PRELOAD library: the n-th call of one kind fails, once. For tests/hard/table.sh.
 //
-//   SSDO_FAULT=KIND      open read write fsync rename close mmap allocate mkdir unlink stat folder thread egl
-//   SSDO_FAULT_AT=N      which of them fails, from 1 on; 0 or none: no one
-//   SSDO_FAULT_COUNT=F   where the number of calls of that kind is put at the end
-//   SSDO_FAULT_WHO=W     program: calls of the program, its modules and the libraries that read and write for it; driver: all
-//   others
+//   SSDO_FAULT=KIND      open read write fsync rename close mmap allocate mkdir unlink stat folder thread egl; all: counts of
+//   each SSDO_FAULT_AT=N      which of them fails, from 1 on; 0 or none: no one SSDO_FAULT_COUNT=F   where the number of calls of
+//   that kind is put at the end; of all: a line "kind number" for each SSDO_FAULT_WHO=W     program: calls of the program, its
+//   modules and the libraries that read and write for it; driver: all others
 #include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
@@ -18,11 +17,16 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 static const char *kind, *who, *count_file;
 static long at;
 static atomic_long count;
+static const char *const kinds[] = {"open",     "read",  "write",  "fsync", "rename", "close",  "mmap",
+                                    "allocate", "mkdir", "unlink", "stat",  "folder", "thread", "egl"};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+static atomic_long counts[KINDS];
 static pid_t process;
 
 __attribute__((constructor)) static void begin(void)
@@ -37,12 +41,13 @@ __attribute__((constructor)) static void begin(void)
 
 __attribute__((destructor)) static void end(void)
 {
-    char text[32];
     if (!count_file || getpid() != process) return;
-    int n = snprintf(text, sizeof text, "%ld\n", atomic_load(&count));
+    bool all = kind && strcmp(kind, "all") == 0;
     kind = NULL;
-    int fd = open(count_file, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    if (fd >= 0 && write(fd, text, (size_t)n) == n) close(fd);
+    FILE *f = fopen(count_file, "w");
+    for (int i = 0; f && all && i < KINDS; i++) fprintf(f, "%s %ld\n", kinds[i], atomic_load(&counts[i]));
+    if (f && !all) fprintf(f, "%ld\n", atomic_load(&count));
+    if (f) fclose(f);
 }
 
 // Whose call it is, by the object that the return address lies in.
@@ -59,9 +64,12 @@ static bool is_program(const void *caller)
 
 static bool fails(const char *what, const void *caller)
 {
-    if (!kind || strcmp(kind, what) != 0) return false;
-    if (is_program(caller) != (!who || strcmp(who, "driver") != 0)) return false;
-    return atomic_fetch_add(&count, 1) + 1 == at;
+    bool all = kind && strcmp(kind, "all") == 0;
+    if (!kind || (!all && strcmp(kind, what) != 0)) return false;
+    if (caller && is_program(caller) != (!who || strcmp(who, "driver") != 0)) return false;
+    for (int i = 0; all && i < KINDS; i++)
+        if (strcmp(kinds[i], what) == 0) atomic_fetch_add(&counts[i], 1);
+    return !all && atomic_fetch_add(&count, 1) + 1 == at;
 }
 
 #define CALLER __builtin_return_address(0)
@@ -124,6 +132,12 @@ DIR *opendir(const char *path)
 {
     if (fails("folder", CALLER)) return fail(EIO), NULL;
     return REAL("opendir", DIR * (*)(const char *))(path);
+}
+
+struct dirent *readdir(DIR *d)
+{
+    if (fails("folder", CALLER)) return fail(EIO), NULL;
+    return REAL("readdir", struct dirent * (*)(DIR *))(d);
 }
 
 ssize_t read(int fd, void *to, size_t n)
@@ -224,6 +238,37 @@ int fstat(int fd, struct stat *s)
 {
     return fails("stat", CALLER) ? fail(EIO) : REAL("fstat", int (*)(int, struct stat *))(fd, s);
 }
+int fstatat(int folder, const char *path, struct stat *s, int flags)
+{
+    if (fails("stat", CALLER)) return fail(EIO);
+    return REAL("fstatat", int (*)(int, const char *, struct stat *, int))(folder, path, s, flags);
+}
+int stat64(const char *path, struct stat64 *s)
+{
+    return fails("stat", CALLER) ? fail(EIO) : REAL("stat64", int (*)(const char *, struct stat64 *))(path, s);
+}
+int fstat64(int fd, struct stat64 *s)
+{
+    return fails("stat", CALLER) ? fail(EIO) : REAL("fstat64", int (*)(int, struct stat64 *))(fd, s);
+}
+int statvfs(const char *path, struct statvfs *s)
+{
+    return fails("stat", CALLER) ? fail(EIO) : REAL("statvfs", int (*)(const char *, struct statvfs *))(path, s);
+}
+int faccessat(int folder, const char *path, int how, int flags)
+{
+    if (fails("stat", CALLER)) return fail(EIO);
+    return REAL("faccessat", int (*)(int, const char *, int, int))(folder, path, how, flags);
+}
+char *realpath(const char *path, char *to)
+{
+    if (fails("stat", CALLER)) return fail(EIO), NULL;
+    return ((char *(*)(const char *, char *))dlvsym(RTLD_NEXT, "realpath", "GLIBC_2.3"))(path, to);
+}
+ssize_t readlink(const char *path, char *to, size_t n)
+{
+    return fails("stat", CALLER) ? fail(EIO) : REAL("readlink", ssize_t(*)(const char *, char *, size_t))(path, to, n);
+}
 int access(const char *path, int how)
 {
     return fails("stat", CALLER) ? fail(EIO) : REAL("access", int (*)(const char *, int))(path, how);
@@ -245,8 +290,7 @@ static void *stand_in(const char *name)
         "eglGetDisplay",   "eglGetPlatformDisplay", "eglGetPlatformDisplayEXT", "eglInitialize",     "eglBindAPI",
         "eglChooseConfig", "eglCreateContext",      "eglMakeCurrent",           "eglQueryDevicesEXT"};
     for (size_t i = 0; name && i < sizeof makers / sizeof *makers; i++)
-        if (strcmp(name, makers[i]) == 0 && kind && strcmp(kind, "egl") == 0 && atomic_fetch_add(&count, 1) + 1 == at)
-            return (void *)nothing;
+        if (strcmp(name, makers[i]) == 0 && fails("egl", NULL)) return (void *)nothing;
     return NULL;
 }
 
@@ -261,7 +305,7 @@ void *dlsym(void *handle, const char *name)
 {
     void *mine = stand_in(name);
     if (mine) return mine;
-    if (kind && strcmp(kind, "egl") == 0 && strcmp(name, "eglGetProcAddress") == 0) {
+    if (kind && (strcmp(kind, "egl") == 0 || strcmp(kind, "all") == 0) && strcmp(name, "eglGetProcAddress") == 0) {
         egl_lookup = (void *(*)(const char *))dlsym_real(handle, name);
         return (void *)lookup;
     }

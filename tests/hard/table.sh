@@ -1,47 +1,45 @@
 #!/bin/sh
 # The fault table: each system call that the program makes while it reads, renders and writes fails once at each of its occurrences
-# (fault.c), in a single frame and in a sequence with previews and reports. After every run: the documented exit code and a sentence,
-# never a hang or a crash, under every target's name the older file or the whole new one, the inputs as they were; and the next run
-# completes. SSDO_HARD=whole tries every occurrence, else the first, the middle one and the last of each call. With SSDO_TABLES the
-# table goes there.
+# (fault.c), in a single frame, in one whose program cache is still empty ("cold"), and in a sequence with automatic radius; all
+# with environment, proxies, preview and report. After every run: the documented exit code and a sentence, never a hang or a
+# crash, under every target's name the older file or the whole new one, no other result with exit code 0, the inputs as they
+# were; and the next run completes. SSDO_HARD=whole tries every occurrence, two processes at a time, else the first, the middle
+# one and the last of each call. With SSDO_TABLES the table goes there.
 set -u
+with=
 build=$(dirname "$SSDO")
 fault=$build/tests/fault.so
 [ -e "$fault" ] || { echo "no $fault"; exit 77; }
 case $(nm -D "$SSDO" 2>/dev/null) in *__asan*|*__tsan*) echo "a sanitizer's own calls are not the program's"; exit 77 ;; esac
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
-die() { echo "FAILED: $*"; [ -s "$dir/err" ] && cat "$dir/err"; exit 1; }
-mkdir "$dir/in" "$dir/good" "$dir/out" "$dir/cache"
-XDG_CACHE_HOME=$dir/cache
-export XDG_CACHE_HOME
+die() { echo "FAILED: $*"; exit 1; }
+kinds="open read write fsync rename close mmap allocate mkdir unlink stat folder thread egl"
+mkdir "$dir/in"
 for i in 1 2; do
     oiiotool samples/still.exr --cut 64x48+$((100 * i))+120 --origin +0+0 --fullpixels -o "$dir/in/f.000$i.exr" >/dev/null || die oiiotool
 done
 oiiotool samples/sky_soft.exr --resize 64x32 -o "$dir/in/sky.exr" >/dev/null 2>&1 || die oiiotool
 printf '{"spheres": [{"centre": [0, 0, 90], "radius": 0.5}]}' >"$dir/in/spheres.json"
 (cd "$dir/in" && sha256sum *) >"$dir/inputs"
-common="-q --radius 0.3 --samples 4 --threads 2 --layers occlusion,radiance --env $dir/in/sky.exr --proxies $dir/in/spheres.json"
 
-one() { "$SSDO" $common "$dir/in/f.0001.exr" -o "$1/o.0001.exr" --preview "$1/p.0001.png" --report "$1/r.0001.json"; }
-many() { "$SSDO" $common "$dir/in/f.####.exr" -o "$1/o.####.exr" --preview "$1/p.####.png" --report "$1/r.####.json" --keep-going $2; }
-run() { # single|sequence FOLDER ...
-    if [ "$1" = single ]; then one "$2"; else many "$2" "${3-}"; fi
+# program single|cold|sequence FOLDER ARGS...: the whole command, into FOLDER; with the environment `with`.
+program() {
+    frame='####'
+    more=--keep-going
+    [ "$1" = sequence ] || frame=0001 more=
+    to=$2
+    shift 2
+    set -- -q "$dir/in/f.$frame.exr" -o "$to/o.$frame.exr" --preview "$to/p.$frame.png" --report "$to/r.$frame.json" --samples 4 \
+        --threads 2 --layers occlusion,radiance --env "$dir/in/sky.exr" --proxies "$dir/in/spheres.json" $more "$@"
+    timeout -k 1 120 env $with "$SSDO" "$@"
 }
-many "$dir/good" "" 2>"$dir/err" || die "the clean run"
+frames() { [ "$1" = sequence ] && echo "0001 0002" || echo 0001; }
 
-# Pixels and attributes; reports hold times, so of those only that they are whole.
-same() { cmp -s "$1" "$2"; }
-whole() { # FOLDER WHAT: every file there is the older one or whole
-    for f in "$1"/*; do
-        [ -e "$f" ] || continue
-        name=$(basename "$f")
-        [ "$(head -c 3 "$f")" = old ] && continue
-        case $name in
-        *.json) [ "$(tail -c 2 "$f")" = "}" ] || die "$2: a partial $name" ;;
-        *) same "$f" "$dir/good/$name" || die "$2: a partial or different $name" ;;
-        esac
-    done
+# try KIND FORM N, in the folder $mine, which holds a cache of its own: "KIND FORM N CODE" to its results, or a sentence to `failed`.
+failed() {
+    { echo "$*"; cat "$mine/err"; } >"$mine/failed"
+    exit 1
 }
 # The exit codes that a kind's fault may have besides 0, for a frame; a sequence says 1 where frames failed.
 codes() {
@@ -49,86 +47,129 @@ codes() {
     open) echo "2 3 4 5" ;;
     read) echo "2 3" ;;
     stat) echo "2 3 4" ;;
-    write|fsync|rename|close|allocate|folder) echo "3 4" ;;
+    folder) echo 3 ;;
+    write|fsync|rename|close|allocate) echo "3 4" ;;
     mmap|thread) echo "5 6" ;;
-    egl) echo "5" ;;
+    egl) echo 5 ;;
     *) echo none ;;
     esac
 }
-
-tried=0 mattered=0 rows=
-# try KIND single|sequence N
-try() {
-    what="$1 $3 of a $2"
-    rm -rf "$dir/out" && mkdir "$dir/out"
-    frames=1
-    [ "$2" = sequence ] && frames="1 2"
-    for i in $frames; do for f in o.000$i.exr p.000$i.png r.000$i.json; do echo old >"$dir/out/$f"; done; done
-    [ "$1" = mkdir ] && rm -rf "$dir/cache" && mkdir "$dir/cache"
-    SSDO_FAULT=$1 SSDO_FAULT_AT=$3 LD_PRELOAD=$fault timeout -k 1 60 "$SSDO" $common $(arguments "$2") >/dev/null 2>"$dir/err"
-    code=$?
-    whole "$dir/out" "$what"
-    (cd "$dir/in" && sha256sum -c --quiet "$dir/inputs" >/dev/null 2>&1) || die "$what: an input changed"
-    tried=$((tried + 1))
-    if [ $code != 0 ]; then
-        mattered=$((mattered + 1))
-        case " $(codes "$1") " in *" $code "*) ;; *) [ $code = 1 ] && [ "$2" = sequence ] || die "$what: exit code $code" ;; esac
-        grep -q '^ssdo-filter: ' "$dir/err" && ! grep -qv '^ssdo-filter: ' "$dir/err" || die "$what: no sentence"
-    else
-        for f in "$dir"/out/*; do [ "$(head -c 3 "$f")" != old ] || die "$what: exit code 0, and $(basename "$f") is the older one"; done
-    fi
-    # The next run.
-    if [ $code != 0 ] && { [ "${SSDO_HARD-}" = whole ] || [ "$2" = single ]; }; then
-        run "$2" "$dir/out" --skip-existing 2>"$dir/err" || die "$what: the next run"
-        for i in $frames; do for f in o.000$i.exr p.000$i.png; do same "$dir/out/$f" "$dir/good/$f" || die "$what: $f after the next run"; done; done
-        [ -z "$(find "$dir/out" -name '.*tmp')" ] || die "$what: the next run leaves $(ls -A "$dir/out")"
-    fi
-}
-arguments() {
-    if [ "$1" = single ]; then
-        echo "$dir/in/f.0001.exr -o $dir/out/o.0001.exr --preview $dir/out/p.0001.png --report $dir/out/r.0001.json"
-    else
-        echo "$dir/in/f.####.exr -o $dir/out/o.####.exr --preview $dir/out/p.####.png --report $dir/out/r.####.json --keep-going"
-    fi
-}
-# How many there are, with nothing failing.
-occurrences() {
-    rm -rf "$dir/out" && mkdir "$dir/out"
-    [ "$1" = mkdir ] && rm -rf "$dir/cache" && mkdir "$dir/cache"
-    SSDO_FAULT=$1 SSDO_FAULT_COUNT=$dir/count LD_PRELOAD=$fault "$SSDO" $common $(arguments "$2") >/dev/null 2>"$dir/err" ||
-        die "$1: the run that counts"
-    cat "$dir/count"
-}
-
-for kind in open read write fsync rename close mmap allocate mkdir unlink folder thread egl; do
-    row="| $kind"
-    for form in single sequence; do
-        n=$(occurrences $kind $form) || { echo "$n"; exit 1; }
-        before=$tried failed=$mattered
-        if [ "${SSDO_HARD-}" = whole ]; then
-            i=1
-            while [ $i -le "$n" ]; do try $kind $form $i; i=$((i + 1)); done
-        elif [ $form = single ] || [ $kind = open ] || [ $kind = write ] || [ $kind = rename ]; then
-            last=0
-            for i in 1 $(((n + 1) / 2)) "$n"; do
-                [ "$i" -gt $last ] && try $kind $form "$i"
-                last=$i
-            done
-        fi
-        row="$row | $n | $((tried - before)) | $((mattered - failed))"
+# Reports hold times, so of those only that they are whole.
+whole() {
+    for f in "$mine"/out/*; do
+        [ -e "$f" ] || continue
+        [ "$(head -c 3 "$f")" = old ] && continue
+        case $f in
+        *.json) [ "$(tail -c 2 "$f")" = "}" ] || failed "$what: a partial ${f##*/}" ;;
+        *) cmp -s "$f" "$dir/good.$1/${f##*/}" || failed "$what: a partial or different ${f##*/}" ;;
+        esac
     done
-    rows="$rows$row |
-"
+}
+begin() {
+    rm -rf "$mine/out" && mkdir "$mine/out"
+    [ "$1" = cold ] && rm -rf "$mine/cache"
+    [ -e "$mine/cache" ] || mkdir "$mine/cache"
+}
+try() {
+    what="$1 $3 of a $2 run"
+    begin "$2"
+    for i in $(frames "$2"); do for f in o.$i.exr p.$i.png r.$i.json; do echo old >"$mine/out/$f"; done; done
+    with="LD_PRELOAD=$fault SSDO_FAULT=$1 SSDO_FAULT_AT=$3"
+    program "$2" "$mine/out" >/dev/null 2>"$mine/err"
+    code=$? with=
+    whole "$2"
+    (cd "$dir/in" && sha256sum -c --quiet "$dir/inputs" >/dev/null 2>&1) || failed "$what: an input changed"
+    if [ $code = 0 ]; then
+        for f in "$mine"/out/*; do [ "$(head -c 3 "$f")" != old ] || failed "$what: exit code 0, and ${f##*/} is the older one"; done
+    else
+        case " $(codes "$1") " in *" $code "*) ;; *) [ $code = 1 ] && [ "$2" = sequence ] || failed "$what: exit code $code" ;; esac
+        grep -q '^ssdo-filter: ' "$mine/err" && ! grep -qv '^ssdo-filter: ' "$mine/err" || failed "$what: no sentence"
+        program "$2" "$mine/out" --skip-existing 2>"$mine/err" || failed "$what: the next run"
+        for i in $(frames "$2"); do
+            for f in o.$i.exr p.$i.png; do cmp -s "$mine/out/$f" "$dir/good.$2/$f" || failed "$what: $f after the next run"; done
+        done
+        [ -z "$(find "$mine/out" -name '.*tmp')" ] || failed "$what: the next run leaves $(ls -A "$mine/out")"
+    fi
+    echo "$1 $2 $3 $code" >>"$mine/results"
+}
+
+# worker K OF: every OF-th line of the list.
+worker() {
+    mine=$dir/worker.$1
+    mkdir "$mine"
+    XDG_CACHE_HOME=$mine/cache
+    export XDG_CACHE_HOME
+    : >"$mine/results"
+    line=0
+    while read -r kind form n; do
+        line=$((line + 1))
+        [ $((line % $2)) = "$1" ] && try "$kind" "$form" "$n"
+    done <"$dir/list"
+}
+
+# --- the clean runs, which also count ---
+mine=$dir/clean
+mkdir "$mine"
+XDG_CACHE_HOME=$mine/cache
+export XDG_CACHE_HOME
+for form in cold single sequence; do
+    begin $form
+    with="LD_PRELOAD=$fault SSDO_FAULT=all SSDO_FAULT_COUNT=$dir/count.$form"
+    program $form "$mine/out" 2>"$mine/err" || { cat "$mine/err"; die "the clean run: $form"; }
+    with=
+    mv "$mine/out" "$dir/good.$form"
 done
+occurrences() { sed -n "s/^$1 //p" "$dir/count.$2"; }
+
+# What is tried of a kind and form. The writes of a cold run are those of a warm one but for the first, which go to the cache.
+for kind in $kinds; do
+    for form in single cold sequence; do
+        n=$(occurrences $kind $form)
+        if [ "${SSDO_HARD-}" = whole ]; then
+            [ $kind = write ] && [ $form = cold ] && n=$((n - $(occurrences write single)))
+            seq 1 "$n" | sed "s/^/$kind $form /"
+        else
+            case $form.$kind in
+            single.*|cold.mkdir|sequence.open|sequence.stat|sequence.write) ;;
+            *) continue ;;
+            esac
+            for i in 1 $(((n + 1) / 2)) "$n"; do [ "$i" = 0 ] || echo "$kind $form $i"; done | uniq
+        fi
+    done
+done >"$dir/list"
+
+jobs=1
+[ "${SSDO_HARD-}" = whole ] && jobs=2
+k=1
+while [ $k -lt $jobs ]; do
+    (worker $k $jobs) &
+    k=$((k + 1))
+done
+(worker 0 $jobs)
+wait
+cat "$dir"/worker.*/failed 2>/dev/null && die "after $(cat "$dir"/worker.*/results | wc -l) faults"
+cat "$dir"/worker.*/results >"$dir/results"
+[ "$(wc -l <"$dir/results")" = "$(wc -l <"$dir/list")" ] || die "not all of the list was tried"
+
+tried() { grep -c "^$1 $2 " "$dir/results"; }
+stopped() { grep "^$1 $2 " "$dir/results" | grep -vc ' 0$'; }
 if [ -n "${SSDO_TABLES-}" ]; then
     {
-        echo "**System calls that fail**: each call of the program and of the libraries that read and write for it fails once. Calls: what"
-        echo "a run makes; stopped: those of the tried that ended with an error; the others did not matter, and the output was the same, byte"
-        echo "for byte. No partial target, no lost input, every next run completed."
+        echo "**System calls that fail**: each call of the program and of the libraries that read and write for it fails once, in a run that"
+        echo "finds its shader programs cached, in one that does not (cold; of its writes those to the cache), and in a sequence of two frames."
+        echo "Calls: what a run makes; stopped: those of the tried that ended with an error; the others did not matter, and the output was the"
+        echo "same, byte for byte. No partial target, no lost input, no other result, every next run completed."
         echo
-        echo "| call | single frame: calls | tried | stopped | sequence of 2: calls | tried | stopped |"
-        echo "| --- | --- | --- | --- | --- | --- | --- |"
-        printf '%s\n' "$rows" # ends in a line that is empty
+        echo "| call | single: calls | tried | stopped | cold: calls | tried | stopped | sequence: calls | tried | stopped |"
+        echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
+        for kind in $kinds; do
+            row="| $kind"
+            for form in single cold sequence; do
+                row="$row | $(occurrences $kind $form) | $(tried $kind $form) | $(stopped $kind $form)"
+            done
+            echo "$row |"
+        done
+        echo
     } >"$SSDO_TABLES/table.md"
 fi
-echo "figure: $tried system calls failed once each, $mattered of them ended the frame: 0 partial targets, 0 lost inputs, every next run completed"
+echo "figure: $(wc -l <"$dir/results") system calls failed once each, $(grep -vc ' 0$' "$dir/results") of them ended the frame: 0 partial targets, 0 lost inputs, 0 other results, every next run completed"
