@@ -57,7 +57,7 @@ static bool next_of(const pass_context *c, const pass_context *small, image_set 
 bool pass_upsample(pass_context *c, const pass_context *small, image_set which, error *e)
 {
     int scalar = 0, colour = 0;
-    c->suns_apart = small->suns_apart;
+    if (which & (IMAGE_BIT(IMAGE_RADIANCE) | IMAGE_BIT(IMAGE_VISIBILITY))) c->suns_apart = small->suns_apart;
     for (;;) {
         draw d = {.scalar_count = 0};
         while (d.scalar_count < SCALARS && next_of(c, small, which, false, &scalar, &d.scalars[d.scalar_count])) d.scalar_count++;
