@@ -83,7 +83,7 @@ static bool run_on(const options *o, run_files *files, const volatile int *stop_
     if (!batch_is(o) && !run_files_check(files, (const int[]){0}, 1, e)) return false;
     // A single frame is read while the context opens; what was made before is compared with the device first.
     bool alone = !batch_is(o) && !o->skip_existing;
-    if (!run_files_read(files, o->skip_exact, e)) return false;
+    if (!run_files_read(files, o, e)) return false;
     if (alone) job_init(&j, o, log);
     bool ok = (alone || job_open(&j, o, log, e)) && check_targets(o, e);
     j.stop = stop_signal;

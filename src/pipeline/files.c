@@ -84,13 +84,34 @@ bool run_files_list(const options *o, run_files *out, error *e)
     return ok;
 }
 
-bool run_files_read(run_files *files, bool exact, error *e)
+// The tables that a config names decide as well as its own text.
+static void add_conversions(run_file *f, const options *o, error *e)
+{
+    struct {
+        bool wanted;
+        const char *from;
+    } conversions[] = {
+        {o->env_colorspace, o->env_colorspace}, {o->albedo_colorspace, o->albedo_colorspace}, {o->preview != NULL, NULL}};
+    char text[3 * COLOUR_IDENTITY] = "";
+    for (size_t i = 0; i < sizeof conversions / sizeof *conversions; i++)
+        if (conversions[i].wanted &&
+            !colour_identity(o->ocio, conversions[i].from, o->display, o->view, text + i * COLOUR_IDENTITY, e))
+            return;
+    digest all[2] = {f->content.sampled, digest_bytes(text, sizeof text)};
+    f->content.sampled = digest_bytes(all, sizeof all);
+    all[0] = f->content.exact;
+    f->content.exact = digest_bytes(all, sizeof all);
+}
+
+bool run_files_read(run_files *files, const options *o, error *e)
 {
     for (int i = 0; i < files->count; i++) {
         run_file *f = &files->list[i];
         if (!f->once) continue;
         f->known = true;
-        if (!content_read(f->path, exrio_head_bytes, exact, &f->content, &f->refusal) && f->refusal.code == ERR_MEMORY) {
+        bool read = content_read(f->path, exrio_head_bytes, o->skip_exact, &f->content, &f->refusal);
+        if (read && f->kind == FILE_COLOURS) add_conversions(f, o, &f->refusal);
+        if (f->refusal.code == ERR_MEMORY) {
             *e = f->refusal;
             return false;
         }

@@ -38,7 +38,7 @@ bool run_files_list(const options *o, run_files *out, error *e);
 void run_files_free(run_files *files);
 
 // Looks into the files that are read once for all frames; false with ERR_MEMORY. That the system refuses one is kept with it.
-bool run_files_read(run_files *files, bool exact, error *e);
+bool run_files_read(run_files *files, const options *o, error *e);
 
 // The file's path in a frame. False if it has none there, or one that does not fit.
 bool run_file_path(const run_file *file, int frame, char *path, size_t size);

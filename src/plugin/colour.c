@@ -50,3 +50,17 @@ bool colour_to_display(const char *config, const char *display, const char *view
     if (convert(path, display, view, rgb, n, message, sizeof message)) return true;
     return err_set(e, ERR_INPUT, path, NULL, "%s", message);
 }
+
+bool colour_identity(const char *config, const char *from, const char *display, const char *view, char text[COLOUR_IDENTITY],
+                     error *e)
+{
+    char message[MODULE_MESSAGE] = "";
+    const char *path = colour_config(config);
+    if (!path) return err_set(e, ERR_USAGE, NULL, NULL, "no OpenColorIO config; name one with --ocio or in $OCIO");
+    if (!check_config(path, e)) return false;
+    colour_identity_fn identity =
+        (colour_identity_fn)module_function(&colour, "ssdo_colour_identity", "converting colours", ERR_INPUT, path, e);
+    if (!identity) return false;
+    if (identity(path, from, display, view, text, COLOUR_IDENTITY, message, sizeof message)) return true;
+    return err_set(e, ERR_INPUT, path, NULL, "%s", message);
+}

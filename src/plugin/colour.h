@@ -15,6 +15,13 @@ bool colour_to_scene_linear(const char *config, const char *from, float *rgb, si
 // default display, and that display's default view. ERR_INPUT names the config and, for an unknown name, those it has.
 bool colour_to_display(const char *config, const char *display, const char *view, float *rgb, size_t n, error *e);
 
+enum { COLOUR_IDENTITY = 512 };
+
+// What a conversion computes, as a text that changes with the config, the look-up tables it names and the environment variables
+// it reads: from `from` to scene_linear or, where that is NULL, from there to the display. Errors as those of the conversion.
+bool colour_identity(const char *config, const char *from, const char *display, const char *view, char text[COLOUR_IDENTITY],
+                     error *e);
+
 // The config that would be used: `config`, else what $OCIO names, else NULL.
 const char *colour_config(const char *config);
 

@@ -11,4 +11,9 @@ typedef int (*colour_to_linear_fn)(const char *config, const char *from, float *
 typedef int (*colour_to_display_fn)(const char *config, const char *display, const char *view, float *rgb, size_t n,
                                     char *message, size_t message_size);
 
+// What a conversion computes, as a text that other values in its tables change: from colour space `from` to scene_linear or,
+// where that is NULL, from scene_linear to the display.
+typedef int (*colour_identity_fn)(const char *config, const char *from, const char *display, const char *view, char *identity,
+                                  size_t identity_size, char *message, size_t message_size);
+
 #endif

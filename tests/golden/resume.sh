@@ -65,6 +65,12 @@ printf 'ocio_profile_version: 1\nroles: {scene_linear: lin}\ndisplays: {d: [!<Vi
 redo 'an OpenColorIO config' in.exr $o --ocio c.ocio --albedo-colorspace c
 sed -i 's/\[2, 2, 2, 1\]/[2, 2, 2.5, 1]/' c.ocio
 redo 'another OpenColorIO config' in.exr $o --ocio c.ocio --albedo-colorspace c
+sed -i 's/!<ExponentTransform>.*/!<FileTransform> {src: t.spi1d}/' c.ocio
+table() { printf 'Version 1\nFrom 0.0 1.0\nLength 2\nComponents 1\n{\n0.0\n%s\n}\n' "$1" >t.spi1d; }
+table 0.5
+redo 'a look-up table' in.exr $o --ocio c.ocio --albedo-colorspace c
+table 0.6
+redo 'another look-up table' in.exr $o --ocio c.ocio --albedo-colorspace c
 cp -r "$here/shaders" shaders
 SSDO_SHADER_DIR=$dir/shaders
 export SSDO_SHADER_DIR
