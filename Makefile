@@ -80,7 +80,9 @@ help:
 	@echo 'make bench-sampling   error by the sequence that slices, steps and sectors draw from, and by the spacing of steps'
 	@echo 'make bench-frame   cost of a whole frame beside copying its file (bench-frame-readme: into tests/bench/RESULTS.md)'
 	@echo 'make dist     an archive that runs where it is unpacked; make check-dist: in fresh Debian roots, as root'
+	@echo 'make dist-oldest OPENEXR=folder IMATH=folder   the same built in Debian 11, from sources of OpenEXR 3 and Imath, as root'
 	@echo 'make check-systems SYSTEMS="bookworm trixie"   both commands of README in fresh Debian roots, as root; an hour'
+	@echo 'make check-openexr VERSIONS="folder ..."   tests against other versions of OpenEXR, and which reads which compression'
 	@echo 'make all | lint | format | install PREFIX= DESTDIR= | uninstall | clean'
 
 $(BIN): $(BUILD)/src/main.o $(BUILD)/libssdo.a
@@ -388,17 +390,24 @@ uninstall:
 # Program, modules and the libraries they need in one archive (tests/dist/make.sh).
 DEPS_DIST := patchelf xz-utils binutils
 SYSTEMS   ?= bookworm trixie
-.PHONY: dist check-dist check-systems
+.PHONY: dist dist-oldest check-dist check-systems check-openexr
 dist:
 	@sh tests/deps.sh $(DEPS_BUILD) $(DEPS_DIST)
 	@$(MAKE) $(JOBS) --no-print-directory all
 	@sh tests/dist/make.sh $(BUILD) $(VERSION)
+# The same in a fresh Debian 11, for systems as old as that: make dist-oldest OPENEXR=folder IMATH=folder, of sources.
+dist-oldest:
+	@sh tests/deps.sh debootstrap
+	@sh tests/dist/oldest.sh $(VERSION) "$(OPENEXR)" "$(IMATH)"
 check-dist:
 	@sh tests/deps.sh debootstrap openimageio-tools
-	@sh tests/dist/check.sh $(BUILD)/ssdo-filter-$(VERSION)-linux-$(shell uname -m).tar.xz $(SYSTEMS)
+	@sh tests/dist/check.sh $(or $(ARCHIVE),$(BUILD)/ssdo-filter-$(VERSION)-linux-$(shell uname -m).tar.xz) $(SYSTEMS)
 check-systems:
 	@sh tests/deps.sh debootstrap
 	@sh tests/systems/check.sh $(SYSTEMS)
+check-openexr: deps-check
+	@sh tests/deps.sh cmake
+	@sh tests/systems/openexr.sh $(VERSIONS)
 
 clean: ; rm -rf $(BUILD) demo
 

@@ -38,7 +38,7 @@ const option_row option_rows[] = {
      .help = "Text put before the names of the new layers, for inputs that already have layers of those names."},
     {.group = GROUP_OUTPUT, .name = "compression", .argument = "none|rle|zips|zip|piz", .kind = OPT_CHOICE,
      .offset = FIELD(compression), .words = WORDS({"none", 0}, {"rle", 0}, {"zips", 0}, {"zip", 0}, {"piz", 0}),
-     .bytes = true, .fallback = "as the input, zip where that is lossy", .help = "Compression of the output."},
+     .bytes = true, .fallback = "as the input, zip where that is none of these", .help = "Compression of the output."},
     {.group = GROUP_OUTPUT, .name = "verify", .kind = OPT_FLAG, .offset = FIELD(verify),
      .help = "Read the written file again, and the input, and compare every channel and attribute that passes through, bit by bit, before the file takes its name. If anything differs the exit status is 4 and no output is kept."},
     {.group = GROUP_OUTPUT, .name = "float", .kind = OPT_FLAG, .offset = FIELD(output_float), .pixels = true,

@@ -140,41 +140,26 @@ static bool check_window(const exrio_file *file, const exrio_part *p, error *e)
                    (long long)w, (long long)h, EXRIO_MAX_SIDE, EXRIO_MAX_PIXELS);
 }
 
-static int lines_per_chunk(int compression)
-{
-    switch (compression) {
-    case EXR_COMPRESSION_ZIP:
-    case EXR_COMPRESSION_PXR24:
-        return 16;
-    case EXR_COMPRESSION_PIZ:
-    case EXR_COMPRESSION_B44:
-    case EXR_COMPRESSION_B44A:
-    case EXR_COMPRESSION_DWAA:
-        return 32;
-    case EXR_COMPRESSION_DWAB:
-        return 256;
-    default:
-        return 1;
-    }
-}
-
 // The library computes with a chunk's size as an int.
 static bool check_chunk_size(const exrio_file *file, int index, const exrio_part *p, error *e)
 {
     uint64_t pixel = 0, w = (uint64_t)box2_width(p->data_window), h = (uint64_t)box2_height(p->data_window);
     for (int c = 0; c < p->channel_count; c++) pixel += sample_size(p->channels[c].type);
-    uint64_t lines = (uint64_t)lines_per_chunk(p->compression), columns = w;
+    uint64_t columns = w;
+    int32_t lines = 1;
     uint32_t tx, ty;
     exr_tile_level_mode_t level;
     exr_tile_round_mode_t round;
     if (p->tiled) {
         if (exr_get_tile_descriptor(file->core, index, &tx, &ty, &level, &round) != EXR_ERR_SUCCESS)
             return err_set(e, ERR_INPUT, file->path, NULL, "is damaged: it is tiled but does not say how; render it again");
-        lines = ty;
+        lines = ty > INT32_MAX ? INT32_MAX : (int32_t)ty;
         if (tx < columns) columns = tx;
+    } else if (exr_get_scanlines_per_chunk(file->core, index, &lines) != EXR_ERR_SUCCESS || lines < 1) {
+        return err_set(e, ERR_INPUT, file->path, NULL, "is damaged: its blocks have no lines; render it again");
     }
-    if (lines > h) lines = h;
-    if (pixel * lines * columns <= EXRIO_MAX_CHUNK_BYTES) return true;
+    if ((uint64_t)lines < h) h = (uint64_t)lines;
+    if (pixel * h * columns <= EXRIO_MAX_CHUNK_BYTES) return true;
     return err_set(e, ERR_INPUT, file->path, NULL,
                    "has blocks of more than %d bytes; save it again with ZIP compression or smaller tiles",
                    EXRIO_MAX_CHUNK_BYTES);
@@ -220,7 +205,6 @@ static bool fill_part(exrio_file *file, int index, error *e)
     p->data_window = box_from(data);
     p->display_window = box_from(display);
     p->compression = (int)compression;
-    p->lossy = compression >= EXR_COMPRESSION_PXR24;
     if (exr_get_pixel_aspect_ratio(file->core, index, &p->pixel_aspect) != EXR_ERR_SUCCESS) p->pixel_aspect = 1.0f;
     const char *name = NULL, *view = NULL;
     if (exr_get_name(file->core, index, &name) != EXR_ERR_SUCCESS || !name) name = "";

@@ -49,7 +49,6 @@ typedef struct exrio_part {
     box2 data_window, display_window;
     float pixel_aspect;
     int compression; // exr_compression_t's value
-    bool lossy;      // B44, B44A, PXR24, DWAA, DWAB: re-encoding would lose more, so it is stored as ZIP
     bool tiled;
     bool deep;               // its pixels cannot be looked at: no channel is ever loaded
     exrio_channel *channels; // in the file's order

@@ -4,6 +4,12 @@
 #include <dlfcn.h>
 #include <openexr.h>
 
+bool exrio_library_decodes(int compression)
+{
+    const bool dwa = OPENEXR_VERSION_MAJOR > 3 || (OPENEXR_VERSION_MAJOR == 3 && OPENEXR_VERSION_MINOR >= 4);
+    return dwa || (compression != EXR_COMPRESSION_DWAA && compression != EXR_COMPRESSION_DWAB);
+}
+
 bool exrio_library_check(error *e)
 {
     int major, minor, patch;

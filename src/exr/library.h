@@ -8,4 +8,8 @@
 // damaged. ERR_INPUT, since no file can be read, naming both versions and the library's file.
 bool exrio_library_check(error *e);
 
+// Whether the library that the program was compiled for decodes this compression itself. DWA it does from 3.4 on: 3.1 cannot, and
+// 3.2 and 3.3 left it to the C++ library's users to try.
+bool exrio_library_decodes(int compression);
+
 #endif

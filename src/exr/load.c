@@ -5,6 +5,7 @@
 #include "base/threads.h"
 #include "exr/codec.h"
 #include "exr/internal.h"
+#include "exr/library.h"
 #include "plugin/images.h"
 
 typedef struct load_worker {
@@ -166,7 +167,7 @@ static bool decode_part(load_job *j, int threads)
     return ok;
 }
 
-// DWAA and DWAB: by the OpenImageIO module.
+// What the library does not decode: by the OpenImageIO module.
 static bool decode_by_module(load_job *j)
 {
     exrio_part *p = j->part;
@@ -205,8 +206,7 @@ static bool load_part(exrio_file *file, int index, int threads, bool *fresh, err
     if (!any) return true;
     load_job j = {.file = file, .index = index, .part = p, .fresh = fresh, .error = e};
     pthread_mutex_init(&j.lock, NULL);
-    bool dwa = p->compression == EXR_COMPRESSION_DWAA || p->compression == EXR_COMPRESSION_DWAB;
-    bool ok = dwa ? decode_by_module(&j) : decode_part(&j, threads);
+    bool ok = exrio_library_decodes(p->compression) ? decode_part(&j, threads) : decode_by_module(&j);
     pthread_mutex_destroy(&j.lock);
     return ok;
 }

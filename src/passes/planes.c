@@ -189,7 +189,7 @@ static int fill_cells(const finder *f, plane *p)
         through += !on;
     }
     for (int y = 0; y < PLANE_CELLS; y++)
-        for (int x = 0; x < PLANE_CELLS; x++) p->cells[y] |= (unsigned short)(balance[y][x] >= 0 ? 1u << x : 0u);
+        for (int x = 0; x < PLANE_CELLS; x++) p->cells[y] = (unsigned short)(p->cells[y] | (balance[y][x] >= 0 ? 1u << x : 0u));
     return through;
 }
 

@@ -116,7 +116,8 @@ static int compression_of(const options *o, const exrio_part *part)
                  {"piz", EXR_COMPRESSION_PIZ}};
     for (size_t i = 0; o->compression && i < sizeof table / sizeof *table; i++)
         if (strcmp(table[i].name, o->compression) == 0) return (int)table[i].value;
-    return part->lossy ? EXR_COMPRESSION_ZIP : part->compression;
+    // Not every OpenEXR can write those that came after PIZ, and what they lose must not be lost twice.
+    return part->compression > (int)EXR_COMPRESSION_PIZ ? EXR_COMPRESSION_ZIP : part->compression;
 }
 
 // The channels of the composite once more, as R, G, B and A.

@@ -14,15 +14,16 @@ patchelf --set-rpath '$ORIGIN/../lib/ssdo-filter/libs' "$program"
 for m in "$modules"/*.so; do patchelf --set-rpath '$ORIGIN/libs' "$m"; done
 cp LICENSE CHANGELOG.md "$stage/share/doc/ssdo-filter"
 
-# Licences of what travels along: those of the packages that the libraries come from.
+# Licences of what travels along: those of the packages that the libraries come from, and the files in $LICENCES for the others.
 licences=$stage/share/doc/ssdo-filter/licences
 mkdir -p "$licences"
+[ -z "${LICENCES-}" ] || cp "$LICENCES"/* "$licences"
 for lib in "$libs"/*; do
     found=$(dpkg -S "*/$(basename "$lib")" 2>/dev/null | head -1 || true)
     package=${found%%:*}
     if [ -n "$package" ] && [ -e "/usr/share/doc/$package/copyright" ]; then
         cp -L "/usr/share/doc/$package/copyright" "$licences/$package"
-    else
+    elif ! ls "$licences" | grep -qi "$(basename "$lib" | sed 's/^lib//; s/Core.*//; s/[-.].*//')"; then
         echo "dist: no licence found for $(basename "$lib")" >&2
     fi
 done
@@ -34,8 +35,15 @@ c=$(newest GLIBC) cxx=$(newest GLIBCXX)
 {
     echo "Needs of the machine: a glibc with $c, a libstdc++ with $cxx, libEGL (glvnd), a driver; see README.md."
     echo "$c is needed by: $(who "$c")"
+    for m in images colour trace; do
+        [ -e "$modules/ssdo-$m.so" ] || echo "Left out, for want of its library where this was built: the module ssdo-$m.so."
+    done
     echo "The program alone needs $(objdump -T "$program" | grep -o 'GLIBC_[0-9.]*' | sort -uV | tail -1)."
 } | tee "$stage/share/doc/ssdo-filter/NEEDS"
+{
+    echo 'Symbols newer than glibc 2.28 and libstdc++ 3.4.25:'
+    sh tests/dist/symbols.sh "$stage"
+} >>"$stage/share/doc/ssdo-filter/NEEDS"
 archive=$build/$name.tar.xz
 tar -C "$build/dist" --sort=name --owner=0 --group=0 -c "$name" | xz -T2 -"${XZ_LEVEL:-6}" >"$archive.tmp"
 mv "$archive.tmp" "$archive"

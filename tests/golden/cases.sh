@@ -160,7 +160,9 @@ run b44.exr --explain
 said "B44 compression stored the half floats of the position pass with loss" b44
 said "B44 compression stored the half floats of the normal pass with loss" b44
 place=$(grep -abo 'compression.compression.' plain.exr | head -1 | cut -d: -f1)
-for number in 10 11 12 99; do
+unknown='12 99'
+case $(pkg-config --modversion OpenEXR) in 3.[123].*) unknown="10 11 $unknown" ;; esac # HTJ2K came with 3.4
+for number in $unknown; do
     cp plain.exr new.exr
     printf "\\$(printf %o $number)" | dd of=new.exr bs=1 seek=$((place + 28)) conv=notrunc 2>/dev/null
     run new.exr --fov 40 -o no.exr

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include "exr/codec.h"
+#include "exr/library.h"
 #include "exrio_support.h"
 
 static int use_built_module(void **state)
@@ -25,7 +26,7 @@ static void write_picture(const char *path, int width, int height)
     free_image(&im);
 }
 
-// DWA is read by the module, which opens the file by its name once more.
+// Where the library has no DWA the module reads it, which opens the file by its name once more.
 static void test_dwa_that_shrinks(void **state)
 {
     (void)state;
@@ -41,9 +42,10 @@ static void test_dwa_that_shrinks(void **state)
     assert_ok(exrio_file_open(in_scratch("a.exr"), &f, &e), e);
     assert_int_equal(rename(in_scratch("b.exr"), in_scratch("a.exr")), 0);
     for (int c = 0; c < f->parts[0].channel_count; c++) f->parts[0].channels[c].wanted = true;
-    assert_false(exrio_file_load(f, 1, &e));
-    assert_int_equal(e.code, ERR_INPUT);
-    assert_non_null(strstr(e.message, "16 x 8 pixels while it was read"));
+    bool loaded = exrio_file_load(f, 1, &e);
+    assert_int_equal(loaded, exrio_library_decodes(EXR_COMPRESSION_DWAA));
+    if (!loaded) assert_int_equal(e.code, ERR_INPUT);
+    if (!loaded) assert_non_null(strstr(e.message, "16 x 8 pixels while it was read"));
     exrio_file_close(f);
 }
 
