@@ -7,8 +7,8 @@ folder=$1 limit=${2-}
 list=$(mktemp)
 trap 'rm -f "$list"' EXIT
 find "$folder" -type f \( -name '*.so*' -o -path '*/bin/*' \) | sort | while read -r file; do
-    objdump -T "$file" 2>/dev/null | sed -n 's/.*\*UND\*.*[ (]\(GLIBC\|GLIBCXX\)_\([0-9.]*\))* *\([^ ]*\)$/\1 \2 \3/p' |
-        while read -r library version symbol; do echo "$library $version $symbol $(basename "$file")"; done
+    objdump -T "$file" 2>/dev/null |
+        sed -n "s~.*\\*UND\\*.*[ (]\\(GLIBC\\|GLIBCXX\\)_\\([0-9.]*\\))* *\\([^ ]*\\)\$~\\1 \\2 \\3 ${file##*/}~p"
 done >"$list"
 [ -s "$list" ] || { echo "symbols: nothing found in $folder" >&2; exit 1; }
 # newer A B: whether version A is newer than B.
