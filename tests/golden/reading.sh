@@ -13,8 +13,10 @@ same() { # NAME, then options: the outputs of both ways of reading
     for read in image texture; do SSDO_READ=$read "$SSDO" -q "$@" -o "$work/$name.$read.exr" 2>"$work/log" || { cat "$work/log"; exit 1; }; done
     cmp "$work/$name.image.exr" "$work/$name.texture.exr" || { echo "$name: the ways of reading differ"; exit 1; }
 }
-ortho=$here/samples/ortho.exr
-still=$here/samples/still.exr
+# The middle of two samples: no multiple of a tile or a group of threads.
+ortho=$work/ortho.exr
+still=$work/still.exr
+for s in ortho still; do oiiotool "$here/samples/$s.exr" --cut 235x133+120+70 --origin +0+0 --fullpixels -o "$work/$s.exr" >/dev/null; done
 same arc "$ortho" --env "$here/samples/sky_sun.exr" --layers $all,bent --samples 32
 same error "$still" --env "$here/samples/sky_soft.exr" --layers occlusion,error,bent --error 0.05
 same half "$still" --env "$here/samples/sky_sun.exr" --quality draft --layers $all,depthmask,diffuse

@@ -31,7 +31,6 @@ say ""
 # ---- layers beside llvmpipe's. One sample that falls to the other side of an edge moves a pixel, not the mean.
 say "| layers beside llvmpipe's | rms and largest difference |"
 say "| --- | --- |"
-grep -v '^#' cases.txt >"$work/cases"
 while read -r name arguments <&3; do
     [ -z "$software" ] || case $name in box-* | ortho-* | *hemisphere) ;; *) continue ;; esac
     if filter $arguments -q --keep none -o "$work/layer.exr" >"$work/log" 2>&1 &&
@@ -41,7 +40,7 @@ while read -r name arguments <&3; do
         bad "$name: $(tail -2 "$work/log")"
     fi
     say "| $name | $(tr '\n' ';' <"$work/figures") |"
-done 3<"$work/cases"
+done 3<cases.txt
 say ""
 
 # ---- time by stage: the second of two runs, so that no shader is compiled.

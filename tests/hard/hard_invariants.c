@@ -288,7 +288,8 @@ static void tiles(void **state)
     printf("figure: tiles of 8, 24, 64, 4096 pixels: the same bits, all methods\n");
 }
 
-int main(void)
+// hard_invariants [FILTER]
+int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(empty_planes),
@@ -296,5 +297,6 @@ int main(void)
         cmocka_unit_test(mirror_and_roll),
         cmocka_unit_test(tiles),
     };
+    if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests_name("hard invariants", tests, hard_open, hard_close);
 }

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: CC0-1.0
-"""Loads an output into Blender's compositor, prints its sockets, and rebuilds the composite from the layers with nodes.
+"""Loads outputs into Blender's compositor, prints their sockets, and rebuilds their composites from the layers with nodes.
 
-    blender -b --factory-startup -P tests/hosts/rebuild.py -- in.exr out_folder
+    blender -b --factory-startup -P tests/hosts/rebuild.py -- in.exr out_folder [in.exr out_folder ...]
 
 Writes out_folder/rebuilt0001.exr = DiffCol * (radiance + indirect) and out_folder/composite0001.exr, both as 32-bit float.
 """
@@ -10,13 +10,9 @@ import sys
 
 import bpy
 
-path, folder = sys.argv[sys.argv.index("--") + 1:]
-image = bpy.data.images.load(path)
 scene = bpy.context.scene
 scene.use_nodes = True
-scene.render.resolution_x, scene.render.resolution_y = image.size
 tree = scene.node_tree
-tree.nodes.clear()
 
 
 def layers(node):
@@ -29,20 +25,12 @@ def layers(node):
 
 
 # Blender 3.4 puts all parts of a file into one layer; 4.3 makes a layer of each.
-def load(layer=None):
+def load(image, layer=None):
     node = tree.nodes.new("CompositorNodeImage")
     node.image = image
     if layer:
         node.layer = layer
     return node
-
-
-sources = {}
-first = load()
-for node in [load(layer) for layer in layers(first)] if first.has_layers else [first]:
-    for socket in node.outputs:
-        sources.setdefault(socket.name, socket)
-print("SOCKETS", image.type, ",".join(sources))
 
 
 def mix(kind, a, b):
@@ -53,13 +41,28 @@ def mix(kind, a, b):
     return node.outputs[0]
 
 
-light = mix("ADD", sources["radiance"], sources["indirect"])
-files = tree.nodes.new("CompositorNodeOutputFile")
-files.base_path = folder
-files.format.file_format = "OPEN_EXR"
-files.format.color_depth = "32"
-files.file_slots.clear()
-for name, socket in (("rebuilt", mix("MULTIPLY", sources["DiffCol"], light)), ("composite", sources["composite"])):
-    files.file_slots.new(name)
-    tree.links.new(socket, files.inputs[name])
-bpy.ops.render.render()
+def rebuild(path, folder):
+    image = bpy.data.images.load(path)
+    scene.render.resolution_x, scene.render.resolution_y = image.size
+    tree.nodes.clear()
+    sources = {}
+    first = load(image)
+    for node in [load(image, layer) for layer in layers(first)] if first.has_layers else [first]:
+        for socket in node.outputs:
+            sources.setdefault(socket.name, socket)
+    print("SOCKETS", image.type, ",".join(sources))
+    light = mix("ADD", sources["radiance"], sources["indirect"])
+    files = tree.nodes.new("CompositorNodeOutputFile")
+    files.base_path = folder
+    files.format.file_format = "OPEN_EXR"
+    files.format.color_depth = "32"
+    files.file_slots.clear()
+    for name, socket in (("rebuilt", mix("MULTIPLY", sources["DiffCol"], light)), ("composite", sources["composite"])):
+        files.file_slots.new(name)
+        tree.links.new(socket, files.inputs[name])
+    bpy.ops.render.render()
+
+
+words = sys.argv[sys.argv.index("--") + 1:]
+for path, folder in zip(words[::2], words[1::2]):
+    rebuild(path, folder)

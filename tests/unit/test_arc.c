@@ -22,7 +22,7 @@ static double at_point(const scene *s, double radius, const char *name, double t
     static rig r;
     error e = {0};
     must(rig_open(&r, NULL, &e), &e);
-    view v = view_perspective(384, 288, 40.0, 1.0);
+    view v = view_perspective(192, 144, 40.0, 1.0);
     view_scene(&v, s);
     gbuffer gb;
     frame_result out;

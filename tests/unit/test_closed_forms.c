@@ -22,7 +22,7 @@
 #include "scene_picture.h"
 #include "truth.h"
 
-enum { WIDTH = 160, HEIGHT = 108, REACH = 6, STEP = 3, SAMPLES = 8192 }; // 64 x 64 on both sides
+enum { WIDTH = 112, HEIGHT = 76, REACH = 6, STEP = 3, SAMPLES = 8192 }; // 64 x 64 on both sides
 static const double LIMIT = 0.01;
 
 typedef enum assumption { VISIBILITY, HORIZON, POINTS, OWN } assumption;

@@ -223,12 +223,14 @@ static void same_bits_for_any_threads(void **state)
     rig_close(&r);
 }
 
-int main(void)
+// test_half [FILTER]
+int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_surface_is_invented),    cmocka_unit_test(the_median_represents),
         cmocka_unit_test(empty_plane_stays_open),    cmocka_unit_test(is_near_the_full_result),
         cmocka_unit_test(nothing_bleeds_over_edges), cmocka_unit_test(same_bits_for_any_threads),
     };
+    if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests_name("half", tests, NULL, NULL);
 }
