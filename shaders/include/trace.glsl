@@ -1,4 +1,4 @@
-// What the shaders of the ray-traced reference share (src/passes/raytrace.h has the order they run in): a list of pixels that is
+// What the shaders of the ray-traced reference share (src/passes/raytrace.c has the order they run in): a list of pixels that is
 // worked through in batches, rays, what they hit, and what they bring if they hit nothing.
 //
 // A ray starts at a point of the mesh, lifted off it by what float rounding can be wrong there, so that it never finds the surface

@@ -181,7 +181,7 @@ const renderer_fact renderer_facts[] = {
      "builtin.P.camera:rgb", "builtin.N.camera:rgb", "builtin:z", "shader.albedo:rgb", "Ci:rgba", .world = WORLD_Y_UP,
      .position_space = IN_CAMERA_BACK, .normal_space = IN_CAMERA_BACK, .unorm_normals = true, .radial = true,
      .background_depth = INFINITY},
-    {"mitsuba", "mitsuba3 src/integrators/aov.cpp: suffix T, ray length, background 0", "pp:XYZ", "nn:XYZ", "dd.y:T",
+    {"mitsuba", "mitsuba3 integrators/aov.cpp: suffix T, ray length, background 0", "pp:XYZ", "nn:XYZ", "dd.y:T",
      "albedo:RGB", ":RGBA", .world = WORLD_Y_UP, .radial = true, .background_depth = 0},
     {"mitsuba", "mitsuba 0.6 src/integrators/misc: the fields position, shNormal and distance (scalar as luminance)",
      "position:RGB", "shNormal:RGB", "distance:Y", "albedo:RGB", ":RGBA", .world = WORLD_Y_UP, .radial = true,
