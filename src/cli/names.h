@@ -10,7 +10,7 @@
     "these are frames of one sequence, as a shell makes them of a *; write '%s' in quotes instead, and such a place in the "     \
     "output's name (several files on a line are the passes of one frame)"
 
-// Whether two paths differ in one number of the file's name alone, as two frames of a sequence do. pattern receives their name
+// Whether two paths differ in one number of the file's name alone, as two frames of a sequence do. pattern receives the path
 // with #### in its place, cut to `size`.
 bool names_are_frames(const char *a, const char *b, char *pattern, size_t size);
 
