@@ -6,8 +6,8 @@
 #include "base/mem.h"
 #include "exr/internal.h"
 
-// Where the view's word is in a name, the component apart, and the last place if there are several: OpenEXR puts it before the
-// component (layer.right.R), some writers put it in front (right.layer.R). NULL if nowhere.
+// The place of the view's word in a name, or NULL. The component is not looked at, and of several places the last counts: OpenEXR
+// puts the word before the component (layer.right.R), some writers put it in front (right.layer.R).
 static const char *view_word(const char *name, const char *view)
 {
     size_t n = strlen(view);

@@ -1,7 +1,7 @@
 // What a depth means that no positions explain. Two witnesses tell its kinds apart, neither of which needs the scale:
 // - the file's normals, which fit the surfaces of the right kind only;
 // - planes, on which 1 / z is linear across a perspective picture (z across an orthographic one) in the right kind only.
-// Where both are silent the renderer's kind counts, unless the values look like no distance: all within 0..1.
+// Where neither tells, the renderer's kind counts, unless all values lie within 0..1 and so can hardly be distances.
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -2,9 +2,9 @@
 // over the directions that the surfaces face. Internal to the room.
 //
 // A pixel is smooth if its neighbours on either side form the same plane within 18 degrees and it is not seen edge-on; a
-// silhouette, a crease and a leaf of two pixels are not. Neighbours are taken as far apart as rounding needs it (half floats).
-// Each sample weighs one over the root of how many face the same way, so that a floor over most of the picture leaves the rest
-// its say: all of a floor's samples together weigh its root.
+// silhouette, a crease and a leaf of two pixels are not. Neighbours lie farther apart where the values are rounded to half.
+// If n samples face the same way, each weighs 1 / sqrt(n) and all of them sqrt(n): a floor that fills most of the picture does
+// not outvote the other surfaces.
 #ifndef SSDO_GBUFFER_EVIDENCE_H
 #define SSDO_GBUFFER_EVIDENCE_H
 
