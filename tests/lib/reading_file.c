@@ -170,25 +170,45 @@ static double kernel(reading_filter f, double x)
     return x >= 2.0 ? 0.0 : x < 1e-9 ? 1.0 : 2.0 * sin(pi * x) * sin(0.5 * pi * x) / (pi * pi * x * x); // Lanczos
 }
 
-static void pixel(const master *m, const reading_case *c, int x, int y, double out[CHANNELS])
+// Filters a line of `count` pixels out of FINE samples each, `stride` apart; beyond the ends the last sample goes on.
+static void filter_line(reading_filter f, const double *in, size_t in_stride, int count, double *out, size_t out_stride)
 {
-    int cx = x * FINE + FINE / 2 + c->aside, cy = y * FINE + FINE / 2, reach = c->filter == FILTER_CLOSEST ? 0 : REACH * FINE;
-    double sum = 0.0, one[CHANNELS];
-    if (reach == 0) {
-        sample(m, c, (size_t)cy * FW + (size_t)cx, out);
-        return;
-    }
-    memset(out, 0, CHANNELS * sizeof *out);
-    for (int v = cy - reach; v <= cy + reach; v++)
-        for (int u = cx - reach; u <= cx + reach; u++) {
-            double w = kernel(c->filter, (double)(u - cx) / FINE) * kernel(c->filter, (double)(v - cy) / FINE);
-            if (w == 0.0) continue;
-            int s = u < 0 ? 0 : u >= FW ? FW - 1 : u, t = v < 0 ? 0 : v >= FH ? FH - 1 : v;
-            sample(m, c, (size_t)t * FW + (size_t)s, one);
-            sum += w;
-            for (int k = 0; k < CHANNELS; k++) out[k] += w * one[k];
+    double weights[2 * REACH * FINE + 1], sum = 0.0;
+    for (int k = 0; k <= 2 * REACH * FINE; k++) sum += weights[k] = kernel(f, (double)(k - REACH * FINE) / FINE);
+    for (int x = 0; x < count; x++) {
+        double *to = out + (size_t)x * out_stride;
+        memset(to, 0, CHANNELS * sizeof *to);
+        for (int k = 0; k <= 2 * REACH * FINE; k++) {
+            if (weights[k] == 0.0) continue;
+            int u = x * FINE + FINE / 2 + k - REACH * FINE, most = count * FINE - 1;
+            const double *from = in + (size_t)(u < 0 ? 0 : u > most ? most : u) * in_stride;
+            for (int c = 0; c < CHANNELS; c++) to[c] += weights[k] / sum * from[c];
         }
-    for (int k = 0; k < CHANNELS; k++) out[k] /= sum;
+    }
+}
+
+// All pixels, CHANNELS each, as the renderer stores them.
+static bool make_pixels(const master *m, const reading_case *c, double *out, error *e)
+{
+    if (c->filter == FILTER_CLOSEST) {
+        for (int i = 0; i < W * H; i++) {
+            int u = i % W * FINE + FINE / 2 + c->aside, v = i / W * FINE + FINE / 2;
+            sample(m, c, (size_t)v * FW + (size_t)u, out + (size_t)i * CHANNELS);
+        }
+        return true;
+    }
+    double *line = mem_pixels(FW, CHANNELS * sizeof *line, e), *columns = mem_pixels((size_t)W * FH, CHANNELS * sizeof *line, e);
+    for (int v = 0; line && columns && v < FH; v++) {
+        for (int u = 0; u < FW; u++) sample(m, c, (size_t)v * FW + (size_t)u, line + (size_t)u * CHANNELS);
+        filter_line(c->filter, line, CHANNELS, W, columns + (size_t)v * W * CHANNELS, CHANNELS);
+    }
+    for (int x = 0; line && columns && x < W; x++)
+        filter_line(c->filter, columns + (size_t)x * CHANNELS, (size_t)W * CHANNELS, H, out + (size_t)x * CHANNELS,
+                    (size_t)W * CHANNELS);
+    bool ok = line && columns;
+    free(line);
+    free(columns);
+    return ok;
 }
 
 typedef struct sheet {
@@ -251,15 +271,17 @@ bool reading_write(const master *m, const reading_case *c, const char *path, err
         s.data[k] = mem_pixels((size_t)W * H, sample_size(s.type[k]), e);
         ok = s.data[k] != NULL;
     }
+    double *pixels = ok ? mem_pixels((size_t)W * H, CHANNELS * sizeof *pixels, e) : NULL;
+    ok = pixels && make_pixels(m, c, pixels, e);
     for (int i = 0; ok && i < W * H; i++) {
-        double v[CHANNELS];
-        pixel(m, c, i % W, i / W, v);
+        const double *v = pixels + (size_t)i * CHANNELS;
         for (int k = 0; k < CHANNELS; k++)
             if (s.type[k] == SAMPLE_HALF)
                 ((uint16_t *)s.data[k])[i] = float_to_half((float)v[k]);
             else
                 ((float *)s.data[k])[i] = (float)v[k];
     }
+    free(pixels);
     ok = ok && write_sheet(m, c, &s, path, e);
     for (int k = 0; k < CHANNELS; k++) free(s.data[k]);
     return ok;
