@@ -14,6 +14,8 @@ static const double odd_length = 0.01;    // of a normal: of one surface alone i
 static const double off_tangent = 0.05;   // of the step between neighbours
 static const double most_bend = 0.5;      // second difference of depth over a pixel's size at that depth
 static const double most_rest = 0.1;      // of a pixel's values that two surfaces do not explain, squared
+static const double turn = 0.2;           // weight of a turn of the normal, squared, that only the pixel itself tells of
+static const double odd_angle = 0.035;    // radians that normals are off the surface's
 static const double step_of_depth = 0.05; // of the depth, that counts as much as normals at right angles
 
 typedef struct stored {
@@ -100,15 +102,6 @@ static bool is_clean(const repair *r, int x, int y)
     return (continues(r, x, y, -1, 0) || continues(r, x, y, 1, 0)) && (continues(r, x, y, 0, -1) || continues(r, x, y, 0, 1));
 }
 
-// How far apart what two pixels store is.
-static double apart(const repair *r, const stored *a, vec3 p, vec3 n, double alpha, double z)
-{
-    double scale = step_of_depth * (r->inverse && !r->b->has_position ? 1.0 / z : z);
-    double by_p = v3_length(v3_sub(a->p, p)) / scale, by_n = v3_length(v3_sub(a->n, n));
-    double by_alpha = r->b->alpha.data ? 2.0 * (a->alpha - alpha) : 0.0;
-    return by_p * by_p + by_n * by_n + by_alpha * by_alpha;
-}
-
 static vec3 made_normal(const build *b, int x, int y)
 {
     const float *n = b->g->normal + 4 * build_index(b, x, y);
@@ -134,89 +127,193 @@ typedef struct side {
     int u, v;        // of the clean pixel
 } side;
 
-enum { SIDES = (2 * REACH + 1) * (2 * REACH + 1) + 1 };
+enum { DIRECTIONS = 8, SIDES = DIRECTIONS + 1 };
 
-// The surfaces of the clean pixels around, nearest to what the pixel stores first, and the background if it is near.
+// The nearest clean pixel in each direction, and the background if it is near.
 static int gather_sides(const repair *r, int x, int y, side list[SIDES])
 {
+    static const int step[DIRECTIONS][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
     const build *b = r->b;
-    const stored *s = &r->pixels[build_index(b, x, y)];
-    double least = INFINITY;
     int count = 0;
     bool open = false;
-    for (int v = y - REACH; v <= y + REACH; v++)
-        for (int u = x - REACH; u <= x + REACH; u++) {
-            if (!inside(b, u, v)) continue;
+    for (int k = 0; k < DIRECTIONS; k++)
+        for (int d = 1; d <= REACH; d++) {
+            int u = x + d * step[k][0], v = y + d * step[k][1];
+            if (!inside(b, u, v)) break;
             size_t i = build_index(b, u, v);
             open = open || !(b->g->depth[i] > 0.0f) || (b->alpha.data && r->pixels[i].alpha < 0.5);
             if (!r->pixels[i].clean) continue;
-            side k = {.n = r->pixels[i].n, .alpha = 1.0, .z = carried(b, u, v, made_normal(b, u, v), x, y), .u = u, .v = v};
-            k.p = value_at(r, x, y, k.z);
-            double d = apart(r, s, k.p, k.n, 1.0, k.z) + 1e-4 * ((u - x) * (u - x) + (v - y) * (v - y)); // of equals the nearest
-            list[count++] = k;
-            if (!(d < least)) continue;
-            least = d;
-            list[count - 1] = list[0], list[0] = k;
+            side s = {.n = r->pixels[i].n, .alpha = 1.0, .z = carried(b, u, v, made_normal(b, u, v), x, y), .u = u, .v = v};
+            s.p = value_at(r, x, y, s.z);
+            list[count++] = s;
+            break;
         }
-    if (!open || count == 0) return count;
-    side nothing = {.p = r->nothing.p, .n = r->nothing.n};
-    list[count++] = nothing;
-    if (apart(r, s, nothing.p, nothing.n, 0.0, list[0].z) < least) list[count - 1] = list[0], list[0] = nothing;
+    if (open && count > 0) list[count++] = (side){.p = r->nothing.p, .n = r->nothing.n};
     return count;
 }
 
-// The share of the other side in the pixel, and how much that leaves unexplained.
-static double share_of(const repair *r, const stored *s, const side *own, const side *other, double *rest)
+// A pixel as a mean of two sides: near, and far behind or beside it.
+typedef struct mixture {
+    const side *near, *far;
+    double share; // of far
+    vec3 n;       // of near
+    double rest;  // what is not explained, squared
+} mixture;
+
+typedef struct values {
+    double v[7];
+} values;
+
+static values values_of(const repair *r, double scale, vec3 p, vec3 n, double alpha)
 {
-    double scale = step_of_depth * (own->z > 0.0 ? own->z : other->z);
-    if (r->inverse && !r->b->has_position) scale = step_of_depth / (own->z > 0.0 ? own->z : other->z);
-    double weight = r->b->alpha.data ? 2.0 : 0.0, f[7], d[7], along = 0.0, length = 0.0;
-    vec3 fp = v3_scale(v3_sub(s->p, own->p), 1.0 / scale), dp = v3_scale(v3_sub(other->p, own->p), 1.0 / scale);
-    vec3 fn = v3_sub(s->n, own->n), dn = v3_sub(other->n, own->n);
-    const double fs[7] = {fp.x, fp.y, fp.z, fn.x, fn.y, fn.z, weight * (s->alpha - own->alpha)};
-    const double ds[7] = {dp.x, dp.y, dp.z, dn.x, dn.y, dn.z, weight * (other->alpha - own->alpha)};
-    for (int k = 0; k < 7; k++) f[k] = fs[k], d[k] = ds[k], along += f[k] * d[k], length += d[k] * d[k];
-    double share = length > 1e-4 ? fmax(-0.3, fmin(0.5, along / length)) : 0.0;
-    *rest = 0.0;
-    for (int k = 0; k < 7; k++) *rest += (f[k] - share * d[k]) * (f[k] - share * d[k]);
-    return share;
+    double weight = r->b->alpha.data ? 2.0 : 0.0;
+    return (values){{p.x / scale, p.y / scale, p.z / scale, n.x, n.y, n.z, weight * alpha}};
 }
 
-// The pixel's own normal, when the other's share is taken out of what it stores; only where that is about the clean pixel's. The
-// surface between two points of known normals runs along the mean of both.
-static void unmix(const repair *r, const stored *s, side *own, const side *other, double share, int x, int y)
+static double pixel_size(const build *b, double z)
 {
-    vec3 n = v3_normalize(v3_sub(s->n, v3_scale(other->n, share)));
-    if (!r->lengths || !(v3_dot(n, own->n) > 0.7)) return;
-    own->z = carried(r->b, own->u, own->v, v3_normalize(v3_add(n, v3_normalize(own->n))), x, y);
-    own->n = n;
-    // In front of another surface what is seen of the own one lies inside its outline: a third of the other's share of a pixel
-    // nearer.
-    double pixel = (r->b->g->camera.kind == CAMERA_PERSPECTIVE ? own->z : 1.0) / r->b->g->camera.fx;
-    if (other->z > 0.0 && other->z < own->z + pixel) return;
-    double cosine = fmax(fabs(v3_dot(n, v3_normalize(build_ray(&r->b->g->camera, x, y)))), 0.1);
-    own->z += 0.3 * fmax(share, 0.0) * pixel * sqrt(1.0 / (cosine * cosine) - 1.0);
+    return (b->g->camera.kind == CAMERA_PERSPECTIVE ? z : 1.0) / b->g->camera.fx;
+}
+
+// The far side's share, if the normal of the near one is what makes up the rest: (N - share far) is (1 - share) long.
+static double share_by_length(const stored *s, const side *far)
+{
+    double a = v3_dot(far->n, far->n) - 1.0, b = 1.0 - v3_dot(s->n, far->n), c = v3_dot(s->n, s->n) - 1.0;
+    double root = b * b - a * c;
+    return root >= 0.0 && b + sqrt(root) > 0.2 ? -c / (b + sqrt(root)) : (double)NAN;
+}
+
+static mixture mix(const repair *r, const stored *s, const side *near, const side *far, bool turns)
+{
+    mixture m = {.near = near, .far = far, .n = near->n, .rest = INFINITY};
+    double scale = step_of_depth * near->z, d2 = 0.0;
+    if (r->inverse && !r->b->has_position) scale = step_of_depth / near->z;
+    values f = values_of(r, scale, s->p, s->n, s->alpha), a = values_of(r, scale, near->p, near->n, near->alpha),
+           b = values_of(r, scale, far->p, far->n, far->alpha);
+    for (int k = 0; k < 7; k++) m.share += (f.v[k] - a.v[k]) * (b.v[k] - a.v[k]), d2 += (b.v[k] - a.v[k]) * (b.v[k] - a.v[k]);
+    m.share = d2 > 1e-4 ? m.share / d2 : 0.0;
+    if (far->alpha < 1.0 && r->b->alpha.data)
+        m.share = 1.0 - s->alpha;
+    else if (turns)
+        m.share = share_by_length(s, far);
+    if (!(m.share > -0.3 && m.share < 1.3)) return m;
+    if (turns) {
+        if (m.share > 0.8) return m;
+        m.n = v3_normalize(v3_sub(s->n, v3_scale(far->n, m.share)));
+        a.v[3] = m.n.x, a.v[4] = m.n.y, a.v[5] = m.n.z;
+    }
+    m.rest = turns ? turn * v3_dot(v3_sub(m.n, near->n), v3_sub(m.n, near->n)) : 0.0;
+    for (int k = 0; k < 7; k++) {
+        double off = f.v[k] - (1.0 - m.share) * a.v[k] - m.share * b.v[k];
+        m.rest += off * off;
+    }
+    return m;
+}
+
+static mixture best_mixture(const repair *r, const stored *s, const side *list, int count)
+{
+    mixture best = {.rest = INFINITY};
+    for (int i = 0; i < count; i++)
+        for (int k = i + 1; k < count; k++) {
+            bool swap = list[i].z == 0.0 || (list[k].z > 0.0 && list[k].z < list[i].z);
+            const side *near = &list[swap ? k : i], *far = &list[swap ? i : k];
+            for (int turns = 0; turns < 1 + r->lengths; turns++) {
+                mixture m = mix(r, s, near, far, turns);
+                if (m.rest < best.rest) best = m;
+            }
+        }
+    return best;
+}
+
+// How a bump map turns the normals around the clean pixel of a side away from the surface that the places form; 0 and false where
+// too few pixels tell.
+static bool bump_at(const repair *r, const side *own, int x, int y, vec3 *bump)
+{
+    static const int step[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+    const build *b = r->b;
+    int u = own->u + (own->u > x) - (own->u < x), v = own->v + (own->v > y) - (own->v < y); // one further inside
+    vec3 at[4];
+    *bump = v3(0, 0, 0);
+    if (!inside(b, u, v) || !r->pixels[build_index(b, u, v)].clean) return false;
+    for (int k = 0; k < 4; k++) {
+        int p = u + step[k][0], q = v + step[k][1];
+        if (!inside(b, p, q) || !r->pixels[build_index(b, p, q)].clean) return false;
+        at[k] = place_of(r, p, q);
+    }
+    vec3 as_stored = r->pixels[build_index(b, u, v)].n, n = v3_normalize(v3_cross(v3_sub(at[0], at[1]), v3_sub(at[2], at[3])));
+    double cosine = v3_dot(n, as_stored);
+    if (!(fabs(cosine) > 0.7)) return false;
+    *bump = v3_sub(as_stored, v3_scale(n, cosine < 0.0 ? -1.0 : 1.0));
+    return true;
+}
+
+// Where a round surface turns away from the eye, the squared cosine between its normal and the ray falls to 0 at the outline, in
+// proportion to the distance from it. A pixel's mean normal is that of a place nearer to the clean pixel than its centre.
+static vec3 normal_at_centre(const build *b, vec3 mean, vec3 clean, const side *own, double share, int x, int y)
+{
+    vec3 ray = v3_normalize(build_ray(&b->g->camera, x, y)), across = v3_sub(mean, v3_scale(ray, v3_dot(mean, ray)));
+    double flat = hypot(across.x, across.y);
+    if (flat < 1e-3) return mean;
+    double inwards = ((x - own->u) * across.x + (y - own->v) * across.y) / flat; // of the clean pixel, in pixels
+    double here = 0.5 - share, seen = 4.0 / 9.0 * (1.0 - share), there = here + inwards;
+    double q_seen = v3_dot(mean, ray) * v3_dot(mean, ray), q_there = v3_dot(clean, ray) * v3_dot(clean, ray);
+    if (inwards < 0.5 || q_there <= q_seen) return mean;
+    double q = fmax(0.0, q_seen + (q_there - q_seen) * (here - seen) / (there - seen));
+    double sign = v3_dot(mean, ray) < 0.0 ? -1.0 : 1.0;
+    return v3_add(v3_scale(v3_normalize(across), sqrt(1.0 - q)), v3_scale(ray, sign * sqrt(q)));
+}
+
+// Planar depth of the near surface at the pixel's centre. Two ways lead to it: along the surface from the clean pixel, whose
+// error grows with the way and the curvature; or by taking the far side's share out of what is stored, whose error grows with the
+// share and the distance between the two.
+static double near_depth(const repair *r, const stored *s, const mixture *m, vec3 at, vec3 clean, double odd, int x, int y)
+{
+    const build *b = r->b;
+    const side *own = m->near, *far = m->far;
+    double z = carried(b, own->u, own->v, v3_normalize(v3_add(at, clean)), x, y);
+    double by_plane = carried(b, own->u, own->v, clean, x, y);
+    double seen = (s->p.z - m->share * far->p.z) / (1.0 - m->share), behind = far->p.z;
+    if (r->inverse && !b->has_position) { seen = 1.0 / seen, behind = far->p.z > 0.0 ? 1.0 / far->p.z : 2.0 * z; }
+    if (!(seen > 0.0) || !isfinite(seen)) return z;
+    double cosine = fmax(0.1, fabs(v3_dot(at, v3_normalize(build_ray(&b->g->camera, x, y)))));
+    double slope = sqrt(1.0 / (cosine * cosine) - 1.0), share = fabs(m->share), pixel = pixel_size(b, z);
+    double off_share = far->z == 0.0 && b->alpha.data ? 0.0005 : 0.004 + 0.02 * share;
+    double off_seen = pixel * slope * share + off_share * fabs(seen - behind);
+    double way = hypot(x - own->u, y - own->v);
+    double off_carried = pixel * way * odd * (1.0 + slope * slope) + 0.15 * fabs(z - by_plane);
+    double trust = off_carried * off_carried / (off_carried * off_carried + off_seen * off_seen + 1e-12);
+    return z + trust * (seen - z);
+}
+
+// What the pixel's own side is at its centre.
+static void settle(const repair *r, const stored *s, const mixture *m, int x, int y, double *z, vec3 *n)
+{
+    const side *own = m->share > 0.5 ? m->far : m->near;
+    *z = own->z, *n = own->n;
+    if (own != m->near || !r->lengths || !(v3_dot(m->n, own->n) > 0.0)) return;
+    vec3 bump;
+    double odd = bump_at(r, own, x, y, &bump) ? 0.003 + 0.3 * v3_length(bump) : odd_angle;
+    vec3 clean = v3_normalize(v3_sub(own->n, bump));
+    vec3 at = normal_at_centre(r->b, v3_normalize(v3_sub(m->n, bump)), clean, own, fmax(m->share, 0.0), x, y);
+    *n = v3_normalize(v3_add(at, bump));
+    *z = near_depth(r, s, m, at, clean, odd, x, y);
 }
 
 static void mend(repair *r, int x, int y)
 {
     build *b = r->b;
     side list[SIDES];
-    stored *s = &r->pixels[build_index(b, x, y)];
-    int count = gather_sides(r, x, y, list), best = 0;
-    if (count == 0) return; // nothing to go by
     size_t i = build_index(b, x, y);
-    double least = INFINITY, share = 0.0;
-    for (int k = 1; k < count; k++) {
-        double rest, part = share_of(r, s, &list[0], &list[k], &rest);
-        if (rest < least) least = rest, best = k, share = part;
-    }
-    if (least > most_rest) return; // more than two surfaces, or a detail that no clean pixel shows
-    side own = list[0];
-    if (own.z > 0.0 && best > 0) unmix(r, s, &own, &list[best], share, x, y);
-    b->raw[i] = (float)own.z; // read when all are done
+    stored *s = &r->pixels[i];
+    int count = gather_sides(r, x, y, list);
+    double z;
+    vec3 n;
+    mixture m = best_mixture(r, s, list, count);
+    if (!(m.rest <= most_rest)) return; // more than two surfaces, or a detail that no clean pixel shows
+    settle(r, s, &m, x, y, &z, &n);
+    b->raw[i] = (float)z; // read when all are done
     b->surface[i] = 1;
-    s->mended = own.n;
+    s->mended = n;
 }
 
 // What a pixel of the background stores, well away from surfaces: encoded normals are not 0 there.
@@ -266,7 +363,8 @@ static void mend_all(repair *r)
         }
         b->g->valid += b->g->depth[i] > 0.0f;
     }
-    atomic_store(&b->bad_positions, 0); // they are among the mended
+    if (!b->has_normal) normals_make(b); // of the mended depths
+    atomic_store(&b->bad_positions, 0);  // they are among the mended
     build_note(b, "%zu pixels of filtered passes lie between surfaces and were given to the nearest one", mended);
 }
 

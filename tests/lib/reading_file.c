@@ -11,7 +11,7 @@
 #include "exr/write.h"
 #include "scene_list.h"
 
-enum { W = READING_WIDTH, H = READING_HEIGHT, FINE = 5, REACH = 2, FW = W * FINE, FH = H * FINE };
+enum { FINE = 5, REACH = 2 };
 enum { POSITION, NORMAL = 3, DEPTH = 6, ALPHA, CHANNELS };
 
 // ---- the master
@@ -34,10 +34,11 @@ static void round_scene(scene *s)
     scene_add_sphere(s, v3(0.1, -1.2, 0.35), 0.35, v3(0.2, 0.8, 0.3));
 }
 
-static void build(reading_scene kind, scene *s, view *v)
+static void build(reading_scene kind, int width, int height, scene *s, view *v)
 {
     *s = (scene){0};
-    *v = kind == SCENE_ORTHO ? view_orthographic(W, H, 6.0, 1.0) : view_perspective(W, H, kind == SCENE_ROUND ? 35.0 : 45.0, 1.0);
+    *v = kind == SCENE_ORTHO ? view_orthographic(width, height, 6.0, 1.0)
+                             : view_perspective(width, height, kind == SCENE_ROUND ? 35.0 : 45.0, 1.0);
     if (kind == SCENE_FLAT) flat_scene(s);
     if (kind == SCENE_ROUND || kind == SCENE_BUMPY) round_scene(s);
     if (kind == SCENE_FACETS) scene_rocks(s);
@@ -55,22 +56,24 @@ static vec3 bumped(vec3 n, vec3 p)
     return v3_normalize(v3_add(n, v3_scale(d, 0.14)));
 }
 
-bool master_make(reading_scene kind, master *m, error *e)
+bool master_make(reading_scene kind, int scale, master *m, error *e)
 {
     scene s;
-    *m = (master){.near = INFINITY};
-    build(kind, &s, &m->view);
+    *m = (master){.near = INFINITY, .width = scale * READING_WIDTH, .height = scale * READING_HEIGHT};
+    const int fine_width = m->width * FINE, fine_height = m->height * FINE;
+    const size_t count = (size_t)fine_width * (size_t)fine_height;
+    build(kind, m->width, m->height, &s, &m->view);
     m->radius = 0.6;
-    m->position = mem_zero((size_t)FW * FH, sizeof *m->position, e);
-    m->normal = mem_zero((size_t)FW * FH, sizeof *m->normal, e);
+    m->position = mem_zero(count, sizeof *m->position, e);
+    m->normal = mem_zero(count, sizeof *m->normal, e);
     if (!m->position || !m->normal) return false;
     tracer t = scene_tracer(&s);
     mat3 to_camera = m3_transpose(m->view.camera.world_from_camera);
-    for (int y = 0; y < FH; y++)
-        for (int x = 0; x < FW; x++) {
+    for (int y = 0; y < fine_height; y++)
+        for (int x = 0; x < fine_width; x++) {
             vec3 origin, direction;
             hit h;
-            size_t i = (size_t)y * FW + (size_t)x;
+            size_t i = (size_t)y * (size_t)fine_width + (size_t)x;
             view_ray(&m->view, (x + 0.5) / FINE, (y + 0.5) / FINE, &origin, &direction);
             if (!t.closest(t.data, origin, direction, 0.0, INFINITY, &h) || h.t > 60.0) continue;
             m->position[i] = m3_apply(to_camera, v3_sub(h.position, m->view.camera.origin));
@@ -190,22 +193,23 @@ static void filter_line(reading_filter f, const double *in, size_t in_stride, in
 // All pixels, CHANNELS each, as the renderer stores them.
 static bool make_pixels(const master *m, const reading_case *c, double *out, error *e)
 {
+    const size_t width = (size_t)m->width, height = (size_t)m->height, fine_width = width * FINE, fine_height = height * FINE;
     if (c->filter == FILTER_CLOSEST) {
-        for (int i = 0; i < W * H; i++) {
-            int u = i % W * FINE + FINE / 2 + c->aside, v = i / W * FINE + FINE / 2;
-            sample(m, c, (size_t)v * FW + (size_t)u, out + (size_t)i * CHANNELS);
+        for (size_t i = 0; i < width * height; i++) {
+            size_t u = i % width * FINE + FINE / 2 + (size_t)c->aside, v = i / width * FINE + FINE / 2;
+            sample(m, c, v * fine_width + u, out + i * CHANNELS);
         }
         return true;
     }
-    double *line = mem_pixels(FW, CHANNELS * sizeof *line, e), *columns = mem_pixels((size_t)W * FH, CHANNELS * sizeof *line, e);
-    for (int v = 0; line && columns && v < FH; v++) {
-        for (int u = 0; u < FW; u++) sample(m, c, (size_t)v * FW + (size_t)u, line + (size_t)u * CHANNELS);
-        filter_line(c->filter, line, CHANNELS, W, columns + (size_t)v * W * CHANNELS, CHANNELS);
-    }
-    for (int x = 0; line && columns && x < W; x++)
-        filter_line(c->filter, columns + (size_t)x * CHANNELS, (size_t)W * CHANNELS, H, out + (size_t)x * CHANNELS,
-                    (size_t)W * CHANNELS);
+    double *line = mem_pixels(fine_width, CHANNELS * sizeof *line, e);
+    double *columns = mem_pixels(width * fine_height, CHANNELS * sizeof *line, e);
     bool ok = line && columns;
+    for (size_t v = 0; ok && v < fine_height; v++) {
+        for (size_t u = 0; u < fine_width; u++) sample(m, c, v * fine_width + u, line + u * CHANNELS);
+        filter_line(c->filter, line, CHANNELS, m->width, columns + v * width * CHANNELS, CHANNELS);
+    }
+    for (size_t x = 0; ok && x < width; x++)
+        filter_line(c->filter, columns + x * CHANNELS, width * CHANNELS, m->height, out + x * CHANNELS, width * CHANNELS);
     free(line);
     free(columns);
     return ok;
@@ -264,17 +268,18 @@ static bool write_sheet(const master *m, const reading_case *c, const sheet *s, 
 bool reading_write(const master *m, const reading_case *c, const char *path, error *e)
 {
     sheet s = {0};
+    const size_t count = (size_t)m->width * (size_t)m->height;
     bool ok = true;
     name_channels(c, &s);
     for (int k = 0; ok && k < CHANNELS; k++) {
         s.type[k] = k >= 3 && k < DEPTH && c->half_normals ? SAMPLE_HALF : SAMPLE_FLOAT;
-        s.data[k] = mem_pixels((size_t)W * H, sample_size(s.type[k]), e);
+        s.data[k] = mem_pixels(count, sample_size(s.type[k]), e);
         ok = s.data[k] != NULL;
     }
-    double *pixels = ok ? mem_pixels((size_t)W * H, CHANNELS * sizeof *pixels, e) : NULL;
+    double *pixels = ok ? mem_pixels(count, CHANNELS * sizeof *pixels, e) : NULL;
     ok = pixels && make_pixels(m, c, pixels, e);
-    for (int i = 0; ok && i < W * H; i++) {
-        const double *v = pixels + (size_t)i * CHANNELS;
+    for (size_t i = 0; ok && i < count; i++) {
+        const double *v = pixels + i * CHANNELS;
         for (int k = 0; k < CHANNELS; k++)
             if (s.type[k] == SAMPLE_HALF)
                 ((uint16_t *)s.data[k])[i] = float_to_half((float)v[k]);

@@ -9,6 +9,7 @@
 #include "gbuffer/encoding.h"
 #include "scene_picture.h"
 
+// Of a picture of scale 1.
 enum { READING_WIDTH = 128, READING_HEIGHT = 96 };
 
 typedef enum reading_scene { SCENE_FLAT, SCENE_ROUND, SCENE_BUMPY, SCENE_FACETS, SCENE_ORTHO, READING_SCENES } reading_scene;
@@ -35,12 +36,14 @@ typedef struct reading_case {
 
 typedef struct master {
     view view;
+    int width, height;
     vec3 *position, *normal; // camera space, y down, FINE x FINE a pixel; position.z 0 where there is no surface
     double radius;
     double near, far; // of its depths, with room
 } master;
 
-bool master_make(reading_scene scene, master *out, error *e);
+// The scene in a picture `scale` times as wide and as high.
+bool master_make(reading_scene scene, int scale, master *out, error *e);
 void master_free(master *m);
 
 // Writes the case to `path`. What it cannot say itself: the field of view or the width, and near and far.

@@ -99,6 +99,31 @@ static void filtered_passes_are_named(void **state)
     scene_file_free(fine);
 }
 
+// Pixels that are given one surface again have its normal, also where the file has none.
+static void mended_pixels_have_normals(void **state)
+{
+    static const char *const filtered[] = {"P.X", "P.Y", "P.Z", "Z"}, *const dropped[] = {"N.X", "N.Y", "N.Z"};
+    (void)state;
+    exrio_file *fine = render(FINE), *f = render(1);
+    for (int c = 0; c < 4; c++) filter_channel(fine, f, filtered[c]);
+    for (int c = 0; c < f->parts[0].channel_count; c++)
+        for (int k = 0; k < 3; k++)
+            if (strcmp(f->parts[0].channels[c].name, dropped[k]) == 0) f->parts[0].channels[c].name[0] = 'u';
+    resolution r;
+    gbuffer g;
+    error e = {0};
+    must(resolve_channels(f, &(resolve_options){0}, &r, NULL, &e), &e);
+    must(gbuffer_build(f, &r, &(gbuffer_options){.threads = 2}, &g, NULL, &e), &e);
+    assert_true(g.normals_from_depth);
+    for (int i = 0; i < W * H; i++) {
+        const float *n = g.normal + 4 * i;
+        if (g.depth[i] > 0.0f) assert_true(fabsf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1.0f) < 1e-4f);
+    }
+    gbuffer_free(&g);
+    scene_file_free(f);
+    scene_file_free(fine);
+}
+
 // What level 45 does to a Y (facts: an error of about 0.01), and to nothing else of X Y Z.
 static void dwa_is_named_with_its_channel_and_share(void **state)
 {
@@ -125,6 +150,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_sound_file_is_not_warned_of),
         cmocka_unit_test(filtered_passes_are_named),
+        cmocka_unit_test(mended_pixels_have_normals),
         cmocka_unit_test(dwa_is_named_with_its_channel_and_share),
     };
     log_init(&heard, LOG_QUIET);
