@@ -1,9 +1,9 @@
 // Passes that went through the picture's reconstruction filter: at an edge their pixels are means of several surfaces, or of a
 // surface and the background's zeros, or, by negative lobes, lie beyond either. Such a pixel is given one surface again.
 //
-// What a pixel stores (position or depth, normal, alpha) is, if the filter is symmetric, nearest to what the surface at its
-// centre stores. So each mixed pixel takes the plane of the clean pixel around it whose stored values, carried to its own ray,
-// are nearest to its own; or becomes background, if that is nearest.
+// Each mixed pixel is explained as a mean of two of the sides around it, each known from a clean pixel. If the filter is
+// symmetric, the centre belongs to the side that has the larger share; the nearer side's normal, which turns at round outlines, is
+// what remains of the stored one without the farther side's share.
 #include <stdlib.h>
 
 #include "base/mem.h"
