@@ -9,6 +9,12 @@ rm -rf "$build/dist" && mkdir -p "$stage"
 make --no-print-directory install BUILD="$build" DESTDIR="$stage" PREFIX= >/dev/null
 program=$stage/bin/ssdo-filter modules=$stage/lib/ssdo-filter libs=$stage/lib/ssdo-filter/libs
 sh tests/dist/libraries.sh "$libs" "$program" "$modules"/*.so
+# A libepoxy before 1.5.10 opens libGL and asks it for a GLX context, which a machine without a display may lack: this one stands
+# before libOpenGL, which has all the rest, and knows of no such context.
+if pkg-config --max-version=1.5.9 epoxy; then
+    echo 'void *glXGetCurrentContext(void); void *glXGetCurrentContext(void) { return 0; }' >"$build/libgl.c"
+    ${CC:-gcc} -shared -fPIC -o "$libs/libGL.so.1" -Wl,-soname,libGL.so.1 "$build/libgl.c" -Wl,--no-as-needed -lOpenGL
+fi
 strip --strip-unneeded "$program" "$modules"/*.so
 patchelf --set-rpath '$ORIGIN/../lib/ssdo-filter/libs' "$program"
 for m in "$modules"/*.so; do patchelf --set-rpath '$ORIGIN/libs' "$m"; done

@@ -15,7 +15,7 @@ root=$folder/root
 trap 'root_leave "$root"; rmdir "$folder"' EXIT
 trap 'exit 130' INT TERM
 root_make bullseye "$root" gcc g++ make cmake ninja-build git ca-certificates pkg-config libopenimageio-dev libopencolorio-dev libopenexr-dev \
-    libembree-dev libegl-dev libegl-mesa0 libgl1-mesa-dri libepoxy-dev libdeflate-dev libjson-c-dev libxxhash-dev patchelf xz-utils binutils
+    libembree-dev libegl-dev libopengl-dev libegl-mesa0 libgl1-mesa-dri libepoxy-dev libdeflate-dev libjson-c-dev libxxhash-dev patchelf xz-utils binutils
 mkdir "$root/source" "$root/openexr" "$root/imath"
 git ls-files | tar c -T - | tar x -C "$root/source"
 cp -r "$openexr/." "$root/openexr"
