@@ -56,6 +56,7 @@ DECIDES  := $(sort $(GLSL) $(wildcard src/exr/*.[ch] src/gbuffer/*.[ch] src/ligh
 BIN      := $(BUILD)/ssdo-filter
 PLUGIN   := $(BUILD)/ssdo-images.so $(BUILD)/ssdo-colour.so $(BUILD)/ssdo-trace.so
 UNIT     := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))
+REPLAY   := $(patsubst tests/fuzz/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
 TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
 HARD     := $(patsubst tests/hard/%.c,$(BUILD)/tests/%,$(wildcard tests/hard/hard_*.c))
 
@@ -137,6 +138,10 @@ $(BUILD)/tests/hard_%: $(BUILD)/tests/hard/hard_%.o $(BUILD)/tests/hard/hard.o $
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(PKG_LIBS)
 
+$(BUILD)/tests/fuzz_%: $(BUILD)/tests/fuzz/fuzz_%.o $(BUILD)/tests/fuzz/replay.o $(BUILD)/libssdo.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
+
 # What makes system calls fail, for tests/hard/table.sh; never sanitized, for it is loaded before everything else. Every function in it
 # comes from dlsym, whose object pointer ISO C does not convert.
 FAULT    := $(BUILD)/tests/fault.so
@@ -157,7 +162,7 @@ demo: deps
 
 check: deps-check
 	@$(MAKE) $(JOBS) --no-print-directory all lint unit
-	@sh tests/run.sh $(BUILD) $(UNIT) $(HARD)
+	@sh tests/run.sh $(BUILD) $(UNIT) $(HARD) $(REPLAY)
 
 # The build without a warning and the unit tests that take a moment: tests/fast.txt.
 FAST     := $(addprefix $(BUILD)/tests/,$(shell grep -v '^\#' tests/fast.txt))
@@ -238,7 +243,7 @@ LISTS     := $(BUILD)/tests/list_variants
 $(LISTS): $(BUILD)/tests/limits/list_variants.o $(BUILD)/libssdo.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
-unit: $(UNIT) $(HARD) $(FAULT) $(LISTS) $(GPU_TOOLS)
+unit: $(UNIT) $(HARD) $(REPLAY) $(FAULT) $(LISTS) $(GPU_TOOLS)
 
 # Real schedulers on this machine (tests/farm/check.sh); what it starts, it stops.
 .PHONY: check-farm

@@ -95,7 +95,7 @@ static const char *value_text(const option_row *row, const options *o, char *buf
         const char *text;
         memcpy(&text, field, sizeof text);
         const char *slash = text && row->kind == OPT_PATH ? strrchr(text, '/') : NULL;
-        return slash ? slash + 1 : text;
+        return slash && slash[1] ? slash + 1 : text;
     }
     if (row->kind == OPT_REAL) {
         memcpy(&v, field, sizeof v);

@@ -4,10 +4,18 @@ import sys
 
 r = random.Random(int(sys.argv[3]))
 data = bytearray(open(sys.argv[1], "rb").read())
+# The header is short and decides most: in half of the copies every other change goes there. The others keep it, and the place of
+# every chunk, so that what decompresses and reads pixels gets to see them.
+header = min(len(data), 2500)
+anywhere = r.random() < 0.5
 for _ in range(r.choice([1, 1, 2, 4, 16])):
-    # The header is short and decides most: half of the changes go there.
-    at = r.randrange(min(len(data), 2500)) if r.random() < 0.5 else r.randrange(len(data))
-    what = r.randrange(6)
+    if not data:
+        break
+    if anywhere:
+        at = r.randrange(min(len(data), header)) if r.random() < 0.5 else r.randrange(len(data))
+    else:
+        at = r.randrange(min(header, len(data) - 1), len(data))
+    what = r.randrange(6 if anywhere else 3)
     if what == 0:
         data[at] ^= 1 << r.randrange(8)
     elif what == 1:

@@ -1,9 +1,10 @@
 #!/bin/sh
-# mutate.sh BUILD SECONDS: files of every compression with some bytes changed, cut short or repeated, through the whole program built
-# with the sanitizers (BUILD/asan). Each run ends with a documented exit code, no report of a sanitizer, and a whole output or none.
+# mutate.sh BUILD SECONDS: files of every compression with some bytes changed, cut short or repeated, as input or as environment,
+# through the whole program built with the sanitizers (BUILD/asan). Each run ends with a documented exit code, no report of a
+# sanitizer, and a whole output or none.
 set -u
-ssdo=$1/asan/ssdo-filter seconds=$2
-[ -x "$ssdo" ] || { echo "no $ssdo: make BUILD=$1/asan SANITIZE=address,undefined all"; exit 77; }
+build=$1 ssdo=$1/asan/ssdo-filter seconds=$2
+[ -x "$ssdo" ] || { echo "no $ssdo: make BUILD=$build/asan SANITIZE=address,undefined all"; exit 77; }
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 here=$(dirname "$0")
@@ -15,17 +16,21 @@ for kind in $kinds; do
     oiiotool "$dir/in.exr" --compression $kind -o "$dir/$kind.exr" >/dev/null || exit 1
     oiiotool "$dir/$kind.exr" --tile 16 16 --compression $kind -o "$dir/$kind-tiled.exr" >/dev/null || exit 1
 done
-end=$(($(date +%s) + seconds)) runs=0 read=0 seed=1
+end=$(($(date +%s) + seconds)) runs=0 read=0 seed=1 round=0
 while [ "$(date +%s)" -lt $end ]; do
+    round=$((round + 1))
     for f in "$dir"/*[0-9a-z].exr; do
         case $f in */in.exr|*/bad.exr|*/out.exr) continue ;; esac
         [ "$(date +%s)" -lt $end ] || break
         seed=$((seed + 1))
         python3 "$here/mutate.py" "$f" "$dir/bad.exr" $seed
         rm -f "$dir/out.exr"
-        timeout -k 1 120 nice -n 19 "$ssdo" -q "$dir/bad.exr" -o "$dir/out.exr" --samples 1 --threads 2 --layers occlusion,radiance \
-            --layout "$([ $((seed % 2)) = 0 ] && echo single || echo multipart)" >"$dir/log" 2>&1
+        # One in four is the environment of a good frame.
+        if [ $(((seed + round) % 4)) = 3 ]; then set -- "$dir/in.exr" --env "$dir/bad.exr"; else set -- "$dir/bad.exr"; fi
+        timeout -k 1 120 nice -n "${FUZZ_NICE:-19}" "$ssdo" -q "$@" -o "$dir/out.exr" --samples 1 --threads 2 --verify \
+            --layers occlusion,radiance --layout "$([ $((round % 2)) = 0 ] && echo single || echo multipart)" >"$dir/log" 2>&1
         code=$?
+        [ -z "${FUZZ_TRACE:-}" ] || echo "$(basename $f) $seed $code $(cut -c1-150 "$dir/log" | head -1)"
         runs=$((runs + 1))
         case $code in
         0) read=$((read + 1)); [ -s "$dir/out.exr" ] || code=bad ;;
@@ -33,9 +38,9 @@ while [ "$(date +%s)" -lt $end ]; do
         *) code=bad ;;
         esac
         if [ $code = bad ]; then
-            mkdir -p "$1/fuzz/crashes" && cp "$dir/bad.exr" "$1/fuzz/crashes/program-$seed.exr"
+            mkdir -p "$build/fuzz/crashes" && cp "$dir/bad.exr" "$build/fuzz/crashes/program-$seed.exr"
             head -60 "$dir/log"
-            echo "FAILED: $(basename "$f"), seed $seed: the file is in $1/fuzz/crashes"
+            echo "FAILED: $(basename "$f"), seed $seed: the file is in $build/fuzz/crashes"
             exit 1
         fi
     done

@@ -2,7 +2,8 @@
 # run.sh BUILD SECONDS [TARGET...]: builds the fuzz targets with clang's libFuzzer, address and undefined-behaviour sanitizers, lets
 # each run for its share of the time at low priority, and says how it went. Without names: exr and frames. They start from
 # tests/fuzz/corpus and what make_corpus writes; new inputs stay in BUILD/fuzz/corpus-*, crashing ones in BUILD/fuzz/crashes.
-# `program` is no libFuzzer target: mutate.sh drives the whole program.
+# `program` is no libFuzzer target: mutate.sh drives the whole program. On a machine that others use too, FUZZ_NICE=5 gets a fair
+# share of it, FUZZ_TIMEOUT=60 leaves an input 60 s instead of 10; the figures say how much of the processor there was.
 set -eu
 top=$1 build=$1/fuzz seconds=$2
 shift 2
@@ -39,14 +40,21 @@ done
 [ ! -d "$build/corpus-exr" ] || "$top/tests/make_corpus" "$build/corpus-exr"
 [ ! -d "$build/corpus-exr" ] || oiiotool "$build/corpus-exr/kind3.exr" --tile 8 8 -o "$build/corpus-exr/tiled.exr" >/dev/null 2>&1 || true
 
+cpu() { # sets `used`: all seconds of processor time of this shell's children
+    times >"$build/times"
+    used=$(tail -1 "$build/times" | sed 's/[ms]/ /g' | awk '{ printf "%d", 60 * $1 + $2 + 60 * $3 + $4 }')
+}
 go() { # TARGET SECONDS MAX_LENGTH
     code=0
-    nice -n 19 "$build/fuzz_$1" "$build/corpus-$1" -max_total_time="$2" -rss_limit_mb=2048 -timeout=10 -max_len="$3" -print_final_stats=1 \
+    cpu
+    before=$used
+    nice -n "${FUZZ_NICE:-19}" "$build/fuzz_$1" "$build/corpus-$1" -max_total_time="$2" -rss_limit_mb=2048 -timeout="${FUZZ_TIMEOUT:-10}" -max_len="$3" -print_final_stats=1 \
         -artifact_prefix="$build/crashes/" >"$build/$1.log" 2>&1 || code=$?
+    cpu
     runs=$(sed -n 's/^stat::number_of_executed_units: //p' "$build/$1.log")
     peak=$(sed -n 's/^stat::peak_rss_mb: *//p' "$build/$1.log")
     edges=$(grep -o 'cov: [0-9]*' "$build/$1.log" | tail -1 | cut -c6-)
-    echo "figure: fuzz_$1: ${runs:-no} executions in $2 s, ${edges:-0} edges covered, peak ${peak:-?} MB, $([ $code = 0 ] && echo 0 crashes || echo CRASHED)"
+    echo "figure: fuzz_$1: ${runs:-no} executions in $2 s ($((used - before)) s of processor time), ${edges:-0} edges covered, peak ${peak:-?} MB, $([ $code = 0 ] && echo 0 crashes || echo CRASHED)"
     [ $code = 0 ] || { tail -40 "$build/$1.log"; exit 1; }
 }
 for t in "$@"; do
