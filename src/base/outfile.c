@@ -4,7 +4,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -16,6 +15,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
+#include "base/process.h"
 
 enum { ATTEMPTS = 16 };
 
@@ -95,22 +95,6 @@ static uint64_t random_number(void)
     return (uint64_t)now.tv_sec * 1000000007u ^ (uint64_t)now.tv_nsec;
 }
 
-// Says where a process id means something: this boot of this machine, this PID namespace (containers may share a host's name but
-// not their processes). FNV-1a of both; 0 where /proc does not tell.
-static uint64_t machine_tag(void)
-{
-    static const char *const id = "/proc/sys/kernel/random/boot_id", *const space = "/proc/self/ns/pid";
-    char text[128] = "";
-    int fd = open(id, O_RDONLY | O_CLOEXEC);
-    ssize_t n = fd >= 0 ? read(fd, text, 64) : -1;
-    if (fd >= 0) close(fd);
-    ssize_t m = n > 0 ? readlink(space, text + n, sizeof text - (size_t)n) : -1;
-    if (m <= 0) return 0;
-    uint64_t h = 14695981039346656037u;
-    for (ssize_t i = 0; i < n + m; i++) h = (h ^ (unsigned char)text[i]) * 1099511628211u;
-    return h;
-}
-
 // ".NAME.HOST-", which the target's temporary files of this host begin with, without the folder; name and host are cut so that
 // the whole stays below NAME_MAX.
 static void temp_beginning(const char *target, char *out, size_t size)
@@ -130,19 +114,19 @@ static char *temp_name(const char *target, const char *beginning, error *e)
     char *name = mem_zero(size, 1, e);
     if (name)
         snprintf(name, size, "%.*s%s%ld-%016llx-%016llx.tmp", (int)folder, target, beginning, (long)getpid(),
-                 (unsigned long long)machine_tag(), (unsigned long long)random_number());
+                 (unsigned long long)process_place(), (unsigned long long)random_number());
     return name;
 }
 
 // True for what follows the beginning of a temporary file whose process is known to be gone: killed, with no time to clean up.
-static bool is_abandoned(const char *rest, uint64_t here)
+static bool is_abandoned(const char *rest)
 {
     char *end;
     long pid = strtol(rest, &end, 10);
     if (pid < 1 || *end != '-' || strlen(end) != 1 + 16 + 1 + 16 + 4) return false;
     uint64_t tag = strtoull(end + 1, &end, 16);
     bool shape = *end == '-' && strspn(end + 1, "0123456789abcdef") == 16 && strcmp(end + 17, ".tmp") == 0;
-    return shape && here != 0 && tag == here && kill((pid_t)pid, 0) != 0 && errno == ESRCH;
+    return shape && process_is_gone(pid, tag);
 }
 
 static void remove_abandoned(const char *target, const char *beginning)
@@ -150,9 +134,8 @@ static void remove_abandoned(const char *target, const char *beginning)
     size_t folder = folder_length(target), length = strlen(beginning);
     char *path = folder ? strndup(target, folder) : strdup(".");
     DIR *d = path ? opendir(path) : NULL;
-    uint64_t here = machine_tag();
     for (struct dirent *entry; d && (entry = readdir(d));)
-        if (strncmp(entry->d_name, beginning, length) == 0 && is_abandoned(entry->d_name + length, here))
+        if (strncmp(entry->d_name, beginning, length) == 0 && is_abandoned(entry->d_name + length))
             unlinkat(dirfd(d), entry->d_name, 0);
     if (d) closedir(d);
     free(path);

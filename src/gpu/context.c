@@ -185,7 +185,7 @@ static bool open_first(gpu *g, EGLDeviceEXT *devices, int count)
     return try_display(g, eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL), "EGL surfaceless");
 }
 
-void gpu_set_up(void) { cache_point_mesa(); }
+void gpu_set_up(void) { cache_open_mesa(); }
 
 // A software device: why, and whether that will do.
 static bool accept_software(gpu *g, gpu_request request, const gpu_surroundings *s, error *e)
@@ -237,9 +237,8 @@ bool gpu_open_as(gpu *g, gpu_request request, log_t *log, error *e)
 
 bool gpu_open(gpu *g, int device, log_t *log, error *e) { return gpu_open_as(g, (gpu_request){.device = device}, log, e); }
 
-void gpu_close(gpu *g)
+static void close_context(gpu *g)
 {
-    if (!g->context) return;
     gpu_programs_free(g);
     gpu_transfers_free(g);
     if (g->framebuffer) glDeleteFramebuffers(1, &g->framebuffer);
@@ -247,6 +246,14 @@ void gpu_close(gpu *g)
     eglMakeCurrent(g->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(g->display, g->context);
     eglTerminate(g->display);
+}
+
+void gpu_close(gpu *g)
+{
+    bool stored = g->programs_compiled > 0;
+    if (g->context) close_context(g);
+    cache_close_mesa();
+    if (stored) cache_tidy();
     *g = (gpu){0};
 }
 
@@ -257,6 +264,7 @@ int gpu_list_devices(gpu_device *list, int max)
     int count = query_devices(devices);
     for (int i = 0; i < count && i < max; i++) {
         gpu g = {0};
+        gpu_set_up(); // each is closed again
         list[i] = (gpu_device){.software = is_software(devices[i]), .usable = open_device(&g, devices[i])};
         const char *node = has_token(eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS), "EGL_EXT_device_drm")
                                ? eglQueryDeviceStringEXT(devices[i], EGL_DRM_DEVICE_FILE_EXT)
