@@ -1,15 +1,12 @@
 #include "base/text.h"
 
+#include <stdarg.h>
+#include <stdbool.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char replacement[] = "\xEF\xBF\xBD";
-
-void text_one_line(char *text)
-{
-    for (unsigned char *p = (unsigned char *)text; *p; p++)
-        if (*p < 0x20 || *p == 0x7f) *p = '?';
-}
 
 // Bytes of the character that begins here, 0 if none does: RFC 3629, so no surrogate, nothing longer than it need be.
 static size_t character(const unsigned char *p)
@@ -26,6 +23,34 @@ static size_t character(const unsigned char *p)
         code = code << 6 | (p[i] & 0x3fu);
     }
     return code < least[n] || (code >= 0xd800 && code < 0xe000) || code > 0x10ffff ? 0 : n;
+}
+
+// U+0080 to U+009F are control characters as well: a terminal may take U+009B for ESC [.
+void text_one_line(char *text)
+{
+    for (unsigned char *p = (unsigned char *)text; *p;) {
+        size_t n = character(p);
+        bool plain = n > 1 ? p[0] != 0xc2 || p[1] >= 0xa0 : n == 1 && *p >= 0x20 && *p != 0x7f;
+        if (!plain) memset(p, '?', n ? n : 1);
+        p += n ? n : 1;
+    }
+}
+
+void text_print(FILE *to, const char *format, ...)
+{
+    char *text = NULL;
+    va_list args;
+    va_start(args, format);
+    int n = vasprintf(&text, format, args);
+    va_end(args);
+    if (n < 0) return;
+    size_t before = strspn(format, "\n"), length = strlen(format), after = 0;
+    while (after < length - before && format[length - 1 - after] == '\n') after++;
+    text[(size_t)n - after] = '\0';
+    text_one_line(text + before);
+    fputs(text, to);
+    for (size_t i = 0; i < after; i++) fputc('\n', to);
+    free(text);
 }
 
 void text_utf8(const char *from, char *to, size_t size)

@@ -3,10 +3,15 @@
 #define SSDO_BASE_TEXT_H
 
 #include <stddef.h>
+#include <stdio.h>
 
-// Makes one line of it, in place: control characters, a line's end among them, become '?', so that a name can neither split a
-// line nor forge one for a supervisor that reads them.
+// Makes one line of it, in place: bytes of control characters, a line's end among them, and bytes that are no UTF-8 become '?',
+// so that a name can neither split a line, nor forge one for a supervisor that reads them, nor command a terminal.
 void text_one_line(char *text);
+
+// fprintf of one line, made one by text_one_line whatever the arguments hold: line ends stand at the beginning and the end of the
+// format only. Nothing is printed where memory runs out.
+void text_print(FILE *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 // A copy in UTF-8 of at most size - 1 bytes: every byte that is not part of a character becomes U+FFFD. What does not fit is cut
 // between characters.

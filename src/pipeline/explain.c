@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "base/text.h"
 #include "base/threads.h"
 #include "cli/frames.h"
 #include "gbuffer/conventions.h"
@@ -12,20 +13,20 @@
 #include "pipeline/inputs.h"
 #include "plugin/colour.h"
 
-static void heading(FILE *to, const char *text) { fprintf(to, "\n%s\n", text); }
+static void heading(FILE *to, const char *text) { text_print(to, "\n%s\n", text); }
 
 static void explain_renderer(const frame_result *r, FILE *to)
 {
     const convention *row = convention_named(r->resolution.convention);
-    fprintf(to, "convention  %s%s, recognised by %s%s\n", row->name, row->confirmed ? "" : " (unverified)",
-            r->resolution.mark ? "the header's " : "channel names", r->resolution.mark ? r->resolution.mark : "");
+    text_print(to, "convention  %s%s, recognised by %s%s\n", row->name, row->confirmed ? "" : " (unverified)",
+               r->resolution.mark ? "the header's " : "channel names", r->resolution.mark ? r->resolution.mark : "");
     if (!row->confirmed)
-        fprintf(to, "            unverified: written from documentation, no file of this renderer has confirmed it\n");
-    if (r->resolution.view_layer[0]) fprintf(to, "view layer  %s\n", r->resolution.view_layer);
+        text_print(to, "            unverified: written from documentation, no file of this renderer has confirmed it\n");
+    if (r->resolution.view_layer[0]) text_print(to, "view layer  %s\n", r->resolution.view_layer);
     const exrio_part *part = &r->file->parts[r->resolution.main_part];
-    fprintf(to, "windows     data %d x %d at (%d, %d), display %d x %d\n", box2_width(part->data_window),
-            box2_height(part->data_window), part->data_window.x0, part->data_window.y0, box2_width(part->display_window),
-            box2_height(part->display_window));
+    text_print(to, "windows     data %d x %d at (%d, %d), display %d x %d\n", box2_width(part->data_window),
+               box2_height(part->data_window), part->data_window.x0, part->data_window.y0, box2_width(part->display_window),
+               box2_height(part->display_window));
 }
 
 static void explain_roles(const frame_result *r, FILE *to)
@@ -34,49 +35,49 @@ static void explain_roles(const frame_result *r, FILE *to)
     for (int i = 0; i < ROLE_COUNT; i++) {
         char line[512];
         resolve_describe(r->file, &r->resolution, (role)i, line, sizeof line);
-        fprintf(to, "  %s\n", line);
+        text_print(to, "  %s\n", line);
     }
-    fprintf(to, "  the albedo counts as %s (--albedo-kind)\n",
-            r->resolution.albedo == ALBEDO_DIFFUSE ? "diffuse: free of metal" : "a base colour");
+    text_print(to, "  the albedo counts as %s (--albedo-kind)\n",
+               r->resolution.albedo == ALBEDO_DIFFUSE ? "diffuse: free of metal" : "a base colour");
 }
 
 static void explain_evidence(const frame_result *r, FILE *to)
 {
     heading(to, "evidence");
-    for (int i = 0; i < r->gb.evidence_count; i++) fprintf(to, "  %s\n", r->gb.evidence[i]);
-    fprintf(to, "  surfaces: %zu of %zu pixels\n", r->gb.valid, (size_t)r->gb.width * (size_t)r->gb.height);
-    fprintf(to, "  automatic radius: %g scene units\n", gbuffer_auto_radius(&r->gb));
-    fprintf(to, "  world directions: %s\n",
-            r->gb.camera.has_world      ? "known"
-            : r->gb.camera.has_rotation ? "known by the normals, the eye's place is not"
-                                        : "unknown (--env needs --env-frame camera, --camera or --normal-space world)");
+    for (int i = 0; i < r->gb.evidence_count; i++) text_print(to, "  %s\n", r->gb.evidence[i]);
+    text_print(to, "  surfaces: %zu of %zu pixels\n", r->gb.valid, (size_t)r->gb.width * (size_t)r->gb.height);
+    text_print(to, "  automatic radius: %g scene units\n", gbuffer_auto_radius(&r->gb));
+    text_print(to, "  world directions: %s\n",
+               r->gb.camera.has_world      ? "known"
+               : r->gb.camera.has_rotation ? "known by the normals, the eye's place is not"
+                                           : "unknown (--env needs --env-frame camera, --camera or --normal-space world)");
 }
 
 static void explain_colour(const options *o, const frame_result *r, FILE *to)
 {
     double xy[8];
     heading(to, "colour");
-    fprintf(to, "  beauty and emission are taken as scene-linear; the albedo %s%s\n",
-            o->albedo_colorspace ? "is converted from " : "too",
-            o->albedo_colorspace ? o->albedo_colorspace : " (--albedo-colorspace names another space)");
+    text_print(to, "  beauty and emission are taken as scene-linear; the albedo %s%s\n",
+               o->albedo_colorspace ? "is converted from " : "too",
+               o->albedo_colorspace ? o->albedo_colorspace : " (--albedo-colorspace names another space)");
     if (exrio_attr_chromaticities(r->file, r->resolution.main_part, xy))
-        fprintf(to, "  primaries by the header: red %.4g %.4g, green %.4g %.4g, blue %.4g %.4g, white %.4g %.4g\n", xy[0], xy[1],
-                xy[2], xy[3], xy[4], xy[5], xy[6], xy[7]);
+        text_print(to, "  primaries by the header: red %.4g %.4g, green %.4g %.4g, blue %.4g %.4g, white %.4g %.4g\n", xy[0],
+                   xy[1], xy[2], xy[3], xy[4], xy[5], xy[6], xy[7]);
     else
-        fprintf(to, "  the header does not say which primaries\n");
+        text_print(to, "  the header does not say which primaries\n");
     const char *config = colour_config(o->ocio);
-    fprintf(to, "  OpenColorIO config: %s\n", config ? config : "none (--ocio, $OCIO)");
+    text_print(to, "  OpenColorIO config: %s\n", config ? config : "none (--ocio, $OCIO)");
 }
 
 static void explain_plan(const frame_result *r, FILE *to)
 {
     heading(to, "what would run");
     for (int i = 0; i < r->plan.step_count; i++)
-        fprintf(to, "  %-12s %s: %s\n", r->plan.steps[i].pass, r->plan.steps[i].runs ? "yes" : "no", r->plan.steps[i].why);
-    fprintf(to, "  layers:");
+        text_print(to, "  %-12s %s: %s\n", r->plan.steps[i].pass, r->plan.steps[i].runs ? "yes" : "no", r->plan.steps[i].why);
+    text_print(to, "  layers:");
     for (int l = 0; l < LAYER_COUNT; l++)
-        if (r->plan.layers & 1u << l) fprintf(to, " %s", layer_table[l]->name);
-    fprintf(to, "\n");
+        if (r->plan.layers & 1u << l) text_print(to, " %s", layer_table[l]->name);
+    text_print(to, "\n");
 }
 
 // The frame that is explained: of a sequence, the first.
@@ -105,9 +106,9 @@ static bool explain_files(const options *o, const input_paths *in, FILE *to, err
         explain_json(&r, ok, &log, e, to);
         goto out;
     }
-    for (int i = 0; i < in->count; i++) fprintf(to, "%s\n", in->list[i]);
+    for (int i = 0; i < in->count; i++) text_print(to, "%s\n", in->list[i]);
     for (const frame_result *v = &r; v && v->file && v->resolution.convention; v = v->next_view) {
-        if (v->view) fprintf(to, "\nview %s\n", v->view);
+        if (v->view) text_print(to, "\nview %s\n", v->view);
         explain_renderer(v, to);
         explain_roles(v, to);
         if (!ok) continue;
@@ -116,7 +117,7 @@ static bool explain_files(const options *o, const input_paths *in, FILE *to, err
         explain_plan(v, to);
     }
     if (log.warning_count) heading(to, "warnings");
-    for (int i = 0; i < log.warning_count; i++) fprintf(to, "  %s\n", log.warnings[i]);
+    for (int i = 0; i < log.warning_count; i++) text_print(to, "  %s\n", log.warnings[i]);
 out:
     frame_free(&r);
     log_free(&log);

@@ -35,4 +35,18 @@ oiiotool samples/still.exr --ch "$V.Depth.Z" -o "$dir/depth.exr" >/dev/null 2>&1
 "$SSDO" "$dir/depth.exr" --explain >"$dir/out" 2>"$dir/err" && die "a lone depth was taken"
 has "depth: $V.Depth.Z" depth
 grep -qF -- --fov "$dir/err" || die "no remedy"
+
+# Names that hold a line's end, an escape sequence and no UTF-8 command no terminal and forge no line; the same length keeps the file
+# whole.
+oiiotool samples/still.exr --cut 40x32+200+120 --origin +0+0 --fullpixels -o "$dir/odd.exr" || die oiiotool
+odd="$dir/$(printf 'a\nssdo-filter: b\033[2J\377.exr')"
+LC_ALL=C sed 's/ViewLayer\./V\x0a\x1b[2J\xffer./g' "$dir/odd.exr" >"$odd" || die sed
+"$SSDO" "$odd" --explain >"$dir/out" 2>&1 || die "odd names"
+has 'V??[2J?er.Position.X/Y/Z' "odd names"
+has 'a?ssdo-filter: b?[2J?.exr' "odd names"
+[ "$(LC_ALL=C tr -d '\n\040-\176' <"$dir/out" | wc -c)" = 0 ] || die "odd names come through"
+"$SSDO" "$odd" -o "$dir/nowhere/out.exr" 2>"$dir/out" && die "no folder"
+"$SSDO" "$odd" --position none.X -o "$dir/out.exr" 2>>"$dir/out" && die "no position"
+[ "$(LC_ALL=C tr -d '\n\040-\176' <"$dir/out" | wc -c)" = 0 ] || die "odd names come through errors"
+[ "$(wc -l <"$dir/out")" = 2 ] || die "errors of other than a line"
 exit 0
