@@ -46,7 +46,7 @@ CXXFLAGS ?= -O2 -g
 ALL_CXXFLAGS = -std=c++17 -fPIC -fvisibility=hidden -Isrc $(CXXFLAGS) -Wall -Wextra -Wpedantic $(SANFLAGS)
 
 SRC      := $(filter-out src/main.c,$(wildcard src/*/*.c))
-OBJ      := $(SRC:%.c=$(BUILD)/%.o) $(BUILD)/shaders.o $(BUILD)/decides.o
+OBJ      := $(SRC:%.c=$(BUILD)/%.o) $(BUILD)/shaders.o $(BUILD)/methods.o $(BUILD)/decides.o
 SHADERS  := $(wildcard shaders/*.comp)
 GLSL     := $(SHADERS) $(wildcard shaders/include/*.glsl shaders/params/*.glsl)
 # What decides pixels, beside the settings and the inputs: a change of it makes --skip-existing make frames again.
@@ -112,6 +112,14 @@ $(BUILD)/shaders.c: $(GLSL) shaders/embed.sh
 	@mkdir -p $(@D)
 	$(Q)sh shaders/embed.sh shaders $(GLSL) >$@.tmp && mv $@.tmp $@
 $(BUILD)/shaders.o: $(BUILD)/shaders.c src/gpu/shaders.h
+	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $<
+
+# The rows of all methods, of which the default one is named here.
+METHODS  := $(wildcard src/passes/*.c)
+$(BUILD)/methods.c: $(METHODS) src/passes/methods.sh
+	@mkdir -p $(@D)
+	$(Q)LC_ALL=C sh src/passes/methods.sh arc $(sort $(METHODS)) >$@.tmp && mv $@.tmp $@
+$(BUILD)/methods.o: $(BUILD)/methods.c src/passes/method.h
 	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $<
 
 $(BUILD)/decides.c: $(DECIDES) src/pipeline/decides.sh
@@ -374,13 +382,17 @@ format: ; clang-format -i $$(git ls-files 'src/*.[ch]' 'src/*.cpp' 'tests/*.[ch]
 $(BUILD)/completion.%: $(BIN)
 	$(Q)$(BIN) --completion $* >$@.tmp && mv $@.tmp $@
 
+# The manual, with its table of methods.
+$(BUILD)/ssdo-filter.1: man/ssdo-filter.1 $(BUILD)/completion.methods.1
+	$(Q)sed '/BEGIN METHODS/r $(BUILD)/completion.methods.1' $< >$@
+
 # Everything where Debian's policy puts it (below PREFIX). FARM: the templates to start from.
 FARM     := samples/farm/slurm.sh samples/farm/openjd.yaml
-install: all $(BUILD)/completion.bash $(BUILD)/completion.zsh
+install: all $(BUILD)/completion.bash $(BUILD)/completion.zsh $(BUILD)/ssdo-filter.1
 	install -d $(addprefix $(DESTDIR),$(BINDIR) $(LIBDIR) $(MANDIR) $(BASHDIR) $(ZSHDIR) $(DOCDIR)/examples)
 	install -m 755 $(BIN) $(DESTDIR)$(BINDIR)/ssdo-filter
 	install -m 644 $(PLUGIN) $(DESTDIR)$(LIBDIR)
-	install -m 644 man/ssdo-filter.1 $(DESTDIR)$(MANDIR)/ssdo-filter.1
+	install -m 644 $(BUILD)/ssdo-filter.1 $(DESTDIR)$(MANDIR)/ssdo-filter.1
 	install -m 644 $(BUILD)/completion.bash $(DESTDIR)$(BASHDIR)/ssdo-filter
 	install -m 644 $(BUILD)/completion.zsh $(DESTDIR)$(ZSHDIR)/_ssdo-filter
 	install -m 644 README.md $(DESTDIR)$(DOCDIR)

@@ -118,7 +118,7 @@ static bool run(const options *o, const volatile int *stop_signal, log_t *log, e
 static bool tell(const options *o, bool *ok, error *e)
 {
     if (o->help)
-        options_print_help(stdout);
+        help_write(stdout);
     else if (o->version)
         puts("ssdo-filter " SSDO_VERSION);
     else if (o->completion)

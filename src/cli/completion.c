@@ -2,18 +2,11 @@
 
 #include <string.h>
 
-#include "cli/options_table.h"
-
-static const completion_values *values_of(const completion_values *v, const char *option)
-{
-    while (v->option && strcmp(v->option, option) != 0) v++;
-    return v->option ? v : NULL;
-}
-
 // The words of a row or of `more`, separated by spaces; false if there are none.
-static bool print_words(FILE *to, const option_row *row, const completion_values *more)
+static bool print_words(FILE *to, const option_row *row, const option_values *more)
 {
-    if (more) fputs(more->words, to);
+    for (const option_value *v = more ? more->values : NULL; v && v->text; v++)
+        fprintf(to, "%s%s", v == more->values ? "" : " ", v->text);
     for (const option_word *w = more ? NULL : row->words; w && w->text; w++)
         fprintf(to, "%s%s", w == row->words ? "" : " ", w->text);
     return more || row->words;
@@ -28,7 +21,7 @@ static void print_glob(FILE *to, const option_row *row)
 
 // ---- bash
 
-static void print_bash_case(FILE *to, const option_row *row, const completion_values *more)
+static void print_bash_case(FILE *to, const option_row *row, const option_values *more)
 {
     fprintf(to, "    --%s", row->name);
     if (row->letter) fprintf(to, " | -%c", row->letter);
@@ -50,7 +43,7 @@ static void print_bash_case(FILE *to, const option_row *row, const completion_va
                      : "' -- \"$cur\"))\n        return ;;\n");
 }
 
-static void print_bash(FILE *to, const completion_values *values)
+static void print_bash(FILE *to, const option_values *values)
 {
     fprintf(to, "# bash completion of ssdo-filter, written by ssdo-filter --completion bash\n"
                 "_ssdo_filter()\n{\n"
@@ -62,7 +55,7 @@ static void print_bash(FILE *to, const completion_values *values)
                 "    case $before in\n");
     for (int i = 0; i < option_row_count; i++)
         if (!option_rows[i].hidden && option_rows[i].kind != OPT_FLAG)
-            print_bash_case(to, &option_rows[i], values_of(values, option_rows[i].name));
+            print_bash_case(to, &option_rows[i], option_values_of(values, option_rows[i].name));
     fprintf(to, "    esac\n    if [[ $cur == -* ]]; then\n        COMPREPLY=($(compgen -W '");
     for (int i = 0; i < option_row_count; i++)
         if (!option_rows[i].hidden) fprintf(to, "%s--%s", i ? " " : "", option_rows[i].name);
@@ -86,7 +79,7 @@ static void print_zsh_help(FILE *to, const char *help)
     }
 }
 
-static void print_zsh_row(FILE *to, const option_row *row, const completion_values *more)
+static void print_zsh_row(FILE *to, const option_row *row, const option_values *more)
 {
     const char *value = row->kind == OPT_FLAG ? "" : "=";
     fprintf(to, "    ");
@@ -115,17 +108,17 @@ static void print_zsh_row(FILE *to, const option_row *row, const completion_valu
     fprintf(to, "' \\\n");
 }
 
-static void print_zsh(FILE *to, const completion_values *values)
+static void print_zsh(FILE *to, const option_values *values)
 {
     fprintf(
         to,
         "#compdef ssdo-filter\n# zsh completion of ssdo-filter, written by ssdo-filter --completion zsh\n_arguments -s -S \\\n");
     for (int i = 0; i < option_row_count; i++)
-        if (!option_rows[i].hidden) print_zsh_row(to, &option_rows[i], values_of(values, option_rows[i].name));
+        if (!option_rows[i].hidden) print_zsh_row(to, &option_rows[i], option_values_of(values, option_rows[i].name));
     fprintf(to, "    '*:input:_files -g \"*.exr\"'\n");
 }
 
-void completion_print(FILE *to, const char *shell, const completion_values *values)
+void completion_print(FILE *to, const char *shell, const option_values *values)
 {
     if (strcmp(shell, "zsh") == 0)
         print_zsh(to, values);

@@ -2,17 +2,11 @@
 #ifndef SSDO_CLI_COMPLETION_H
 #define SSDO_CLI_COMPLETION_H
 
-#include <stdbool.h>
 #include <stdio.h>
 
-// Values of a text option that this room does not know, such as the methods.
-typedef struct completion_values {
-    const char *option; // without dashes; NULL ends a list of these
-    const char *words;  // separated by spaces
-    bool list;          // several, separated by commas
-} completion_values;
+#include "cli/options_table.h"
 
-// shell: "bash" or "zsh".
-void completion_print(FILE *to, const char *shell, const completion_values *values);
+// shell: "bash" or "zsh". The lists of values end at a NULL option.
+void completion_print(FILE *to, const char *shell, const option_values *values);
 
 #endif

@@ -49,7 +49,7 @@ typedef struct options {
     int trace;        // passes/trace.h's backend: 0 auto, 1 embree, 2 gpu
     int mesh_axes;    // -1 auto, 0 same, 1 y-up, 2 z-up
 
-    const char *bounce; // none, arc, ssdo; NULL = the method's own where it has one
+    const char *bounce; // none, or a name of passes/method.h; NULL = the method's own where it has one
     double bounce_strength;
     int vpl_count;
     const char *proxies; // spheres the camera does not see; may be a pattern
@@ -96,7 +96,7 @@ typedef struct options {
     bool explain, explain_json; // --explain, --explain=json
     bool strict, verify;
     bool verbose, quiet, help, version;
-    const char *completion; // print the completion script of this shell
+    const char *completion; // print this part: bash, zsh, methods.1, methods.md
 } options;
 
 void options_defaults(options *o);
@@ -104,7 +104,6 @@ void options_defaults(options *o);
 // Fills *o from argv. ERR_USAGE names the offending option and how to get help. Numbers are read in the C locale.
 bool options_parse(int argc, char **argv, options *o, error *e);
 
-void options_print_help(FILE *to);
 // The OPTIONS section of the man page in mdoc(7)/man(7) source; man/ssdo-filter.1 holds its output between markers, a test
 // compares.
 void options_print_man(FILE *to);

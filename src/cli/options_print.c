@@ -25,7 +25,7 @@ static int print_wrapped(FILE *to, int at, const char *text)
     return at;
 }
 
-static void print_help_row(FILE *to, const option_row *row)
+static void print_help_row(FILE *to, const option_row *row, const option_values *more)
 {
     char left[96], fallback[256];
     char letter[8] = "    ";
@@ -44,16 +44,23 @@ static void print_help_row(FILE *to, const option_row *row)
         print_wrapped(to, at, fallback);
     }
     fprintf(to, "\n");
+    for (const option_value *v = more ? more->values : NULL; v && v->text; v++) {
+        if (!v->help) continue;
+        at = fprintf(to, "%*s%s:", HELP_COLUMN, "", v->text);
+        print_wrapped(to, at, v->help);
+        fprintf(to, "\n");
+    }
 }
 
-void options_print_help(FILE *to)
+void options_print_help(FILE *to, const option_values *values)
 {
     fprintf(to, "usage: ssdo-filter [options] INPUT... -o OUTPUT\n"
                 "Ambient occlusion, directional light and one diffuse bounce from a G-buffer EXR.\n");
     for (int g = 0; g < GROUP_COUNT; g++) {
         fprintf(to, "\n%s\n", option_group_title((option_group)g));
         for (int i = 0; i < option_row_count; i++)
-            if ((int)option_rows[i].group == g && !option_rows[i].hidden) print_help_row(to, &option_rows[i]);
+            if ((int)option_rows[i].group == g && !option_rows[i].hidden)
+                print_help_row(to, &option_rows[i], option_values_of(values, option_rows[i].name));
     }
     fprintf(to, "\nExit status: 0 done, 1 some frames failed, 2 usage, 3 input, 4 output, 5 GL or EGL, 6 memory,\n7 doubtful "
                 "input under --strict.\n"

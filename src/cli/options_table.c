@@ -1,6 +1,7 @@
 #include "cli/options_table.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "cli/frames.h"
 #include "cli/options.h"
@@ -45,7 +46,7 @@ const option_row option_rows[] = {
      .help = "Write the new layers as 32-bit float instead of half."},
 
     {.group = GROUP_ESTIMATOR, .name = "method", .argument = "NAME", .kind = OPT_TEXT, .offset = FIELD(method), .pixels = true,
-     .fallback = "arc", .help = "How visibility is estimated; the manual has a table of the methods."},
+     .fallback = "arc", .help = "How visibility is estimated; the manual has a table of what each weighs and cannot see."},
     {.group = GROUP_ESTIMATOR, .name = "preset", .argument = "scene|closeup", .kind = OPT_CHOICE, .offset = FIELD(preset),
      .words = WORDS({"scene", 0}, {"closeup", 0}), // not recorded: its values are
      .help = "A set of values for options that are not given: \"scene\" is alchemy with radius 0.05, scale 2 and contrast 3, for a room in metres; \"closeup\" is alchemy with radius 0.08, scale 1.7 and contrast 2.2."},
@@ -101,8 +102,8 @@ const option_row option_rows[] = {
     {.group = GROUP_ESTIMATOR, .name = "proxies", .argument = "FILE.json", .kind = OPT_PATH, .offset = FIELD(proxies), .pixels = true,
      .help = "Spheres in world space that stand for occluders the camera does not see; with a frame place (####) a file for each frame of a sequence."},
 
-    {.group = GROUP_BOUNCE, .name = "bounce", .argument = "none|arc|ssdo|vpl", .kind = OPT_CHOICE, .offset = FIELD(bounce),
-     .words = WORDS({"none", 0}, {"arc", 0}, {"ssdo", 0}, {"vpl", 0}), .pixels = true, .fallback = "the method's own where it has one",
+    {.group = GROUP_BOUNCE, .name = "bounce", .argument = "none|NAME", .kind = OPT_TEXT, .offset = FIELD(bounce),
+     .pixels = true, .fallback = "the method's own where it has one",
      .help = "How one diffuse bounce is estimated: arc from the blocked sectors of its slices, at any distance, ssdo from the blockers within the radius, vpl from lights chosen all over the picture, at any distance. It needs an albedo."},
     {.group = GROUP_BOUNCE, .name = "bounce-strength", .argument = "S", .kind = OPT_REAL, .offset = FIELD(bounce_strength),
      .min = 0, .max = INFINITY, .pixels = true, .fallback = "1", .help = "Multiplies the bounce; 1 is the physical amount."},
@@ -246,11 +247,18 @@ const option_row option_rows[] = {
     {.group = GROUP_RUN, .name = "quiet", .letter = 'q', .kind = OPT_FLAG, .offset = FIELD(quiet),
      .help = "Say nothing but errors."},
     {.group = GROUP_RUN, .name = "help", .letter = 'h', .kind = OPT_FLAG, .offset = FIELD(help), .help = "Print this list and exit."},
-    {.group = GROUP_RUN, .name = "completion", .argument = "bash|zsh", .kind = OPT_CHOICE, .offset = FIELD(completion),
-     .words = WORDS({"bash", 0}, {"zsh", 0}), .hidden = true, .help = "Print the shell's completion script and exit."},
+    {.group = GROUP_RUN, .name = "completion", .argument = "bash|zsh|methods.1|methods.md", .kind = OPT_CHOICE, .offset = FIELD(completion),
+     .words = WORDS({"bash", 0}, {"zsh", 0}, {"methods.1", 0}, {"methods.md", 0}), .hidden = true,
+     .help = "Print the shell's completion script, or the table of methods for the manual or the README, and exit."},
     {.group = GROUP_RUN, .name = "version", .kind = OPT_FLAG, .offset = FIELD(version), .help = "Print the version and exit."},
 };
 // clang-format on
+
+const option_values *option_values_of(const option_values *v, const char *option)
+{
+    while (v && v->option && strcmp(v->option, option) != 0) v++;
+    return v && v->option ? v : NULL;
+}
 
 const int option_row_count = (int)(sizeof option_rows / sizeof *option_rows);
 

@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 typedef enum option_kind {
     OPT_FLAG,   // bool, no argument: becomes true; with words, one may follow "=" and sets a second bool
@@ -61,6 +62,22 @@ typedef struct option_row {
 
 extern const option_row option_rows[];
 extern const int option_row_count;
+
+// Values of a text option that this room does not know, such as the methods.
+typedef struct option_value {
+    const char *text, *help; // help: a phrase, or NULL
+} option_value;
+typedef struct option_values {
+    const char *option;         // without dashes; NULL ends a list of these
+    const option_value *values; // ends with a NULL text
+    bool list;                  // several, separated by commas
+} option_values;
+
+// The whole of --help. values: of options whose words this room does not know; NULL: none.
+void options_print_help(FILE *to, const option_values *values);
+
+// The values of this option; NULL if there are none.
+const option_values *option_values_of(const option_values *v, const char *option);
 
 // The heading of a group.
 const char *option_group_title(option_group g);

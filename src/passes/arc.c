@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "passes/method.h"
+
 static const float HUGE_LENGTH = 1e15f; // its square is still a float
 static const float KAPPA = 1.0f;        // a run is as thick as it is wide
 // How far a run may turn between two steps: the tangent of 52 degrees, and within the radius, where many steps are short, of 65.
@@ -163,7 +165,7 @@ static bool run_bent(pass_context *c, const char *what, error *e)
     return ok;
 }
 
-static bool run_occlusion(pass_context *c, const char *what, error *e)
+bool arc_run_occlusion(pass_context *c, const char *what, error *e)
 {
     if (c->set.error > 0.0) return arc_run_adaptive(c, what, e) && (!c->want_bent || run_bent(c, what, e));
     const arc_params params = arc_params_of(c);
@@ -233,16 +235,54 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
     return arc_run_as_adaptive(c, &call, &params, e);
 }
 
-bool pass_gtao(pass_context *c, error *e) { return run_occlusion(c, "HORIZON", e); }
-bool pass_bitmask(pass_context *c, error *e) { return run_occlusion(c, "BITMASK", e); }
-
-bool pass_arc(pass_context *c, error *e)
+static bool run(pass_context *c, error *e)
 {
-    if (!arc_make_inputs(c, e) || !run_occlusion(c, "RUNS", e)) return false;
+    if (!arc_make_inputs(c, e) || !arc_run_occlusion(c, "RUNS", e)) return false;
     return !(c->want_radiance || c->want_visibility) || run_light(c, true, c->want_indirect, e);
 }
 
-bool pass_arc_bounce(pass_context *c, error *e)
+static bool run_bounce(pass_context *c, error *e)
 {
     return c->indirect.id || (arc_make_inputs(c, e) && run_light(c, false, true, e));
 }
+
+static const variant_row variants[] = {
+    {.program = "arc",
+     .pattern =
+         ARC_OCCLUSION("RUNS [PLANES]") " | RUNS [PLANES] LIGHT [VISIBILITY] | RUNS [PLANES] LIGHT [VISIBILITY] BOUNCE EXITANT | "
+                                        "RUNS [PLANES] BOUNCE [EXITANT]"},
+    {.program = "plane_light", .pattern = ""},
+    {.program = "suns", .pattern = ""},
+    {.program = "suns_add", .pattern = "[VISIBILITY]"},
+    {.program = "surface", .pattern = "[PLANES]"},
+    {0},
+};
+
+const bounce_kind bounce_arc = {
+    .name = "arc",
+    .source = SEES_PICTURE,
+    .march = BOUNCE_WITH_PICTURE,
+    .run = run_bounce,
+};
+
+const method method_arc = {
+    .name = "arc",
+    .summary =
+        "arcs that connected surfaces block in slices around the view vector; planes of the picture stand in for what is hidden",
+    .weighting = "cosine, in slices around the view vector",
+    .reaches = "surfaces within the radius; for light and bounce at any distance",
+    .blind = "what neither the camera sees nor a large visible plane continues; how deep a body is, is guessed from its width",
+    .light = "environment, sun shadows and one bounce by the same march",
+    .choose = "always, unless a look must be matched",
+    .options = "error thickness planes",
+    .samples = 64,
+    .blur = 4,
+    .thickness = 0.15,
+    .makes = MAKES_LIGHT | MAKES_BENT | MAKES_ERROR,
+    .source = SEES_PICTURE,
+    .weight = WEIGHS_COSINE,
+    .reach = REACH_SURFACES,
+    .bounce = &bounce_arc,
+    .variants = variants,
+    .run = run,
+};

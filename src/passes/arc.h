@@ -18,6 +18,11 @@ bool arc_make_inputs(pass_context *c, error *e);
 // The words `what` and, if the frame has planes that may stand in, PLANES.
 variant arc_variant(const pass_context *c, const char *what);
 
+// What the march of an occlusion makes beside it, each wanted or not; `blocked` says what blocks its sectors.
+#define ARC_OCCLUSION(blocked) blocked " [BENT] [HALF_DIFFERENCE] | " blocked " HALF_DIFFERENCE ROUND"
+// Makes the occlusion, and bent if it is wanted, by a march that `blocked` names, in rounds if an error is asked for.
+bool arc_run_occlusion(pass_context *c, const char *blocked, error *e);
+
 // The parameters for another grid than that of c->set.samples.
 void arc_set_grid(arc_params *p, int slices, int steps);
 arc_params arc_params_of_grid(const pass_context *c, int slices, int steps);

@@ -3,157 +3,80 @@
 #include <stdio.h>
 #include <string.h>
 
-const method methods[] = {
-    {
-        .name = "arc",
-        .summary = "arcs blocked by runs of connected surface, of a thickness taken from their width, in slices around the view "
-                   "vector; large planes stand in for what the camera does not see",
-        .weighting = "cosine",
-        .reach = "surfaces within the radius; for light and bounce at any distance",
-        .blind = "hidden and off-screen surfaces that are not on a large visible plane; the back of what it sees is a guess",
-        .samples = 64,
-        .blur = 4,
-        .thickness = 0.15,
-        .fills_radiance = true,
-        .fills_bent = true,
-        .adaptive = true,
-        .bounce = "arc",
-        .run = pass_arc,
-    },
-    {
-        .name = "ssdo",
-        .summary = "screen-space directional occlusion (Ritschel, Grosch, Seidel 2009): a point on each hemisphere direction",
-        .weighting = "cosine",
-        .reach = "points up to the radius",
-        .blind = "thin and near blockers between the points; whatever the camera does not see",
-        .samples = 64,
-        .blur = 4,
-        .thickness = 2.0,
-        .fills_radiance = true,
-        .bounce = "ssdo",
-        .run = pass_ssdo,
-    },
-    {
-        .name = "alchemy",
-        .summary = "Alchemy obscurance (McGuire et al. 2011): taps on a disc, no visibility test",
-        .weighting = "obscurance: cosine over distance, near blockers count more",
-        .reach = "surfaces within the radius",
-        .blind = "direction: light is SH irradiance times occlusion; whatever the camera does not see",
-        .samples = 32,
-        .blur = 4,
-        .thickness = 0.0,
-        .fills_radiance = false,
-        .bounce = NULL,
-        .run = pass_alchemy,
-    },
-    {
-        .name = "hemisphere",
-        .summary = "normal-oriented hemisphere: points in the half space over the normal, with a range check",
-        .weighting = "the common tutorial's kernel: nearly solid angle, near points count more",
-        .reach = "points up to the radius, most of them within half of it",
-        .blind = "direction: light is SH irradiance times occlusion; whatever the camera does not see",
-        .samples = 64,
-        .blur = 4,
-        .thickness = 0.0,
-        .fills_radiance = false,
-        .bounce = NULL,
-        .run = pass_hemisphere,
-    },
-    {
-        .name = "hbao",
-        .summary = "horizon-based occlusion (Bavoil et al. 2008): one horizon a direction, weight 1 - r^2",
-        .weighting = "solid angle, blockers fade with distance",
-        .reach = "surfaces within the radius",
-        .blind = "all beneath a horizon is blocked; light is SH irradiance times occlusion; whatever the camera does not see",
-        .samples = 256,
-        .blur = 2,
-        .thickness = 0.0,
-        .fills_radiance = false,
-        .bounce = NULL,
-        .run = pass_hbao,
-    },
-    {
-        .name = "s3ho",
-        .summary = "spherical harmonics of the cosine-weighted visibility (Herholz et al. 2011), relit by a dot product",
-        .weighting = "cosine",
-        .reach = "points up to the radius",
-        .blind = "sharp shadows: nine coefficients hold soft ones only; the rest as ssdo",
-        .samples = 32,
-        .blur = 2,
-        .thickness = 2.0,
-        .fills_radiance = true,
-        .fills_sh = true,
-        .bounce = NULL,
-        .run = pass_s3ho,
-    },
-    {
-        .name = "gtao",
-        .summary = "horizons in slices around the view vector (Jimenez et al. 2016)",
-        .weighting = "cosine",
-        .reach = "surfaces within the radius",
-        .blind = "all behind a horizon: thin surfaces darken too much; light is SH irradiance times occlusion",
-        .samples = 256,
-        .blur = 2,
-        .thickness = 0.0,
-        .fills_radiance = false,
-        .fills_bent = true,
-        .adaptive = true,
-        .bounce = NULL,
-        .run = pass_gtao,
-    },
-    {
-        .name = "bitmask",
-        .summary = "visibility bitmask of constant thickness (Therrien et al. 2023), sectors of equal cosine weight",
-        .weighting = "cosine",
-        .reach = "surfaces within the radius",
-        .blind = "gaps between samples; light is SH irradiance times occlusion",
-        .samples = 256,
-        .blur = 2,
-        .thickness = 0.3,
-        .fills_radiance = false,
-        .fills_bent = true,
-        .adaptive = true,
-        .bounce = NULL,
-        .run = pass_bitmask,
-    },
-    {0},
-};
+const method *method_default(void) { return methods[0]; }
 
-const method method_raytrace = {
-    .name = "raytrace",
-    .summary = "the picture's points against the scene's own mesh (--mesh): the truth, up to noise",
-    .weighting = "cosine",
-    .reach = "the mesh within the radius; for light and bounce at any distance",
-    .blind = "what is not in the mesh: textures, smooth normals, emission, transparency",
-    .samples = 64,
-    .blur = 0,
-    .thickness = 0.0,
-    .fills_radiance = true,
-    .needs_mesh = true,
-    .bounce = "raytrace",
-    .run = pass_raytrace,
-};
-
-const method *method_at(int i)
+const method *method_next(const method *m, unsigned sources)
 {
-    int pictures = (int)(sizeof methods / sizeof *methods) - 1; // without the row that ends them
-    return i < pictures ? &methods[i] : i == pictures ? &method_raytrace : NULL;
+    const method *const *at = methods;
+    while (m && *at++ != m) continue;
+    while (*at && !((*at)->source & sources)) at++;
+    return *at;
 }
 
 const method *method_find(const char *name)
 {
-    const method *m;
-    for (int i = 0; (m = method_at(i)); i++)
-        if (strcmp(m->name, name) == 0) return m;
+    for (const method *const *m = methods; *m; m++)
+        if (strcmp((*m)->name, name) == 0) return *m;
     return NULL;
 }
 
-void method_names(char *text, size_t size, const char *between)
+const bounce_kind *bounce_find(const char *name)
 {
-    const method *m;
+    for (const bounce_kind *const *b = bounces; *b; b++)
+        if ((*b)->source & SEES_PICTURE && strcmp((*b)->name, name) == 0) return *b;
+    return NULL;
+}
+
+static void append(char *text, size_t size, const char *before, const char *name)
+{
+    size_t used = strlen(text);
+    snprintf(text + used, size - used, "%s%s", used ? before : "", name);
+}
+
+void method_names(char *text, size_t size, unsigned product, const char *between, const char *last)
+{
+    const method *held = NULL; // its separator depends on what follows
     text[0] = '\0';
-    for (int i = 0; (m = method_at(i)); i++) {
-        size_t used = strlen(text);
-        snprintf(text + used, size - used, "%s%s", i ? between : "", m->name);
+    for (const method *m = method_next(NULL, SEES_ANY); m; m = method_next(m, SEES_ANY)) {
+        if ((m->makes & product) != product) continue;
+        if (held) append(text, size, between, held->name);
+        held = m;
     }
+    if (held) append(text, size, last, held->name);
+}
+
+void bounce_names(char *text, size_t size, const char *between)
+{
+    text[0] = '\0';
+    for (const bounce_kind *const *b = bounces; *b; b++)
+        if ((*b)->source & SEES_PICTURE) append(text, size, between, (*b)->name);
+}
+
+// ---- tables
+
+// A cell of a table: in mdoc a minus sign between spaces is one that can be copied.
+static void print_cell(FILE *to, const char *text, const char *end)
+{
+    for (const char *p = text; *p; p++) fprintf(to, p > text && p[-1] == ' ' && *p == '-' && p[1] == ' ' ? "\\-" : "%c", *p);
+    fputs(end, to);
+}
+
+void methods_print_man(FILE *to)
+{
+    fputs(".TS\nl lx lx lx.\nMethod\tWeighting\tReach\tCannot see\n_\n", to);
+    for (const method *m = method_next(NULL, SEES_ANY); m; m = method_next(m, SEES_ANY)) {
+        fprintf(to, "%s\tT{\n", m->name);
+        print_cell(to, m->weighting, "\nT}\tT{\n");
+        print_cell(to, m->reaches, "\nT}\tT{\n");
+        print_cell(to, m->blind, "\nT}\n");
+    }
+    fputs(".TE\n", to);
+}
+
+void methods_print_markdown(FILE *to)
+{
+    fputs("| method | samples | light | choose it |\n| --- | --- | --- | --- |\n", to);
+    for (const method *m = method_next(NULL, SEES_ANY); m; m = method_next(m, SEES_ANY))
+        fprintf(to, "| `%s`%s | %d | %s | %s |\n", m->name, m == method_default() ? " (default)" : "", m->samples, m->light,
+                m->choose);
 }

@@ -212,13 +212,14 @@ static bool bind_all(const pass_context *c, const pass_call *call, const gpu_pro
     return true;
 }
 
+static const char *words_of(const pass_call *call) { return call->variant ? call->variant : ""; }
+
 static const gpu_program *program_of(pass_context *c, const pass_call *call, bool drawn, error *e)
 {
-    const variant_row *row = variant_find(call->program);
-    const char *words = call->variant ? call->variant : "";
+    const char *words = words_of(call);
     char file[64], defines[2 * VARIANT_TEXT];
-    if (!row || !variant_allowed(row, words)) {
-        err_set(e, ERR_GL, call->program, NULL, "passes/variants.c does not know the variant '%s' of this shader", words);
+    if (!variant_find(call->program, words)) {
+        err_set(e, ERR_GL, call->program, NULL, "no row of passes/variants.h allows the variant '%s' of this shader", words);
         return NULL;
     }
     variant v = {{0}};
@@ -248,7 +249,7 @@ static int tiles_of(const pass_call *call, const gpu_tiles *t)
 static bool run_call(pass_context *c, const pass_call *call, error *e)
 {
     pass_timing clock = pass_clock(c, call->label ? call->label : call->program);
-    const variant_row *row = variant_find(call->program);
+    const variant_row *row = variant_find(call->program, words_of(call));
     bool drawn = row && row->drawable && c->g->habits.draw && !call->exact;
     const gpu_program *p = program_of(c, call, drawn, e);
     if (!p) return false;

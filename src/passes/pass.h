@@ -192,22 +192,9 @@ bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, er
 // it has none.
 bool pass_add_group(const pass_context *c, unsigned group, variant *words, pass_picture writes[PASS_MOST_WRITES + 1]);
 
-// ---- the passes, one file and one shader each
-// ------------------------------------------------------------------------------------
-bool pass_raytrace(pass_context *c, error *e); // -> occlusion, radiance, visibility, indirect
-bool pass_raytrace_bounce(pass_context *c, error *e);
-bool pass_alchemy(pass_context *c, error *e);     // -> occlusion (1 - S, before its bounds)
-bool pass_arc(pass_context *c, error *e);         // -> occlusion, bent, radiance and visibility (suns_apart)
-bool pass_arc_bounce(pass_context *c, error *e);  // radiance or beauty, albedo -> indirect, if the light's march has not made it
-bool pass_suns(pass_context *c, error *e);        // radiance, visibility: in place, if their suns are apart
-bool pass_gtao(pass_context *c, error *e);        // -> occlusion, bent
-bool pass_bitmask(pass_context *c, error *e);     // -> occlusion, bent
-bool pass_hemisphere(pass_context *c, error *e);  // -> occlusion
-bool pass_hbao(pass_context *c, error *e);        // -> occlusion
-bool pass_s3ho(pass_context *c, error *e);        // -> sh, occlusion, radiance, visibility
-bool pass_ssdo(pass_context *c, error *e);        // -> occlusion, radiance, visibility
-bool pass_vpl(pass_context *c, error *e);         // radiance or beauty, albedo -> indirect
-bool pass_ssdo_bounce(pass_context *c, error *e); // radiance or beauty, albedo -> indirect
+// ---- the passes that serve every method (passes/method.h), one file and one shader each
+
+bool pass_suns(pass_context *c, error *e); // radiance, visibility: in place, if their suns are apart
 // The occlusion by a filter that knows its noise from `half_difference`; other pictures by one that does not.
 typedef struct pass_denoising {
     const gpu_image *moments; // between the directions, rgba32f

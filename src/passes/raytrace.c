@@ -9,10 +9,9 @@
 
 #include "base/mem.h"
 #include "light/alias_table.h"
+#include "passes/method.h"
 #include "passes/params.h"
-#include "passes/pass.h"
 #include "passes/trace.h"
-#include "passes/variants.h"
 
 enum { BATCH = 16384, ROUND = 16, PROBES = 2048 };
 static const double WRONG_MESH = 0.1, DOUBTFUL_MESH = 0.8; // shares of the points that lie on it
@@ -300,7 +299,7 @@ static bool prepare(trace_run *r, error *e)
     return make_room(r, e);
 }
 
-bool pass_raytrace(pass_context *c, error *e)
+static bool run(pass_context *c, error *e)
 {
     bool light = c->want_radiance || c->want_visibility, bounce = c->want_indirect;
     pass_timing clock = pass_clock(c, "raytrace");
@@ -324,9 +323,49 @@ bool pass_raytrace(pass_context *c, error *e)
 }
 
 // Traced in the same loop.
-bool pass_raytrace_bounce(pass_context *c, error *e)
+static bool run_bounce(pass_context *c, error *e)
 {
     (void)c;
     (void)e;
     return true;
 }
+
+static const variant_row variants[] = {
+    {.program = "trace_add", .pattern = "[LIGHT]"},
+    {.program = "trace_bounce", .pattern = ""},
+    {.program = "trace_finish", .pattern = "[BOUNCE] | LIGHT [BOUNCE] [VISIBILITY]"},
+    {.program = "trace_gather", .pattern = ""},
+    {.program = "trace_grid", .pattern = ""},
+    {.program = "trace_points", .pattern = "FIND | SETTLE"},
+    {.program = "trace_start", .pattern = "[DISTANT] | LIGHT DISTANT"},
+    {0},
+};
+
+const bounce_kind bounce_raytrace = {
+    .name = "raytrace",
+    .source = SEES_MESH,
+    .march = BOUNCE_WITH_METHOD,
+    .run = run_bounce,
+};
+
+const method method_raytrace = {
+    .name = "raytrace",
+    .summary = "the picture's points against the scene's own mesh, --mesh: the truth, up to noise",
+    .weighting = "cosine",
+    .reaches = "the mesh within the radius; for light and bounce at any distance",
+    .blind = "what the mesh does not hold: textures, emission, transparency; directions under a face that its smooth normal "
+             "includes are blocked",
+    .light = "everything, against the scene's own mesh",
+    .choose = "to know the truth",
+    .options = "mesh mesh-axes trace",
+    .samples = 64,
+    .blur = 0,
+    .thickness = 0.0,
+    .makes = MAKES_LIGHT,
+    .source = SEES_MESH,
+    .weight = WEIGHS_COSINE,
+    .reach = REACH_SURFACES,
+    .bounce = &bounce_raytrace,
+    .variants = variants,
+    .run = run,
+};

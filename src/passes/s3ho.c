@@ -4,9 +4,8 @@
 
 #include "base/mem.h"
 #include "light/sh.h"
+#include "passes/method.h"
 #include "passes/params.h"
-#include "passes/pass.h"
-#include "passes/variants.h"
 
 static const double Y00 = 0.28209479177387814;
 
@@ -109,7 +108,7 @@ static bool light(pass_context *c, error *e)
     return pass_run(c, &call, e);
 }
 
-bool pass_s3ho(pass_context *c, error *e)
+static bool run(pass_context *c, error *e)
 {
     for (int k = 0; k < images(c); k++)
         if (!pass_make(c, &c->sh[k], GL_RGBA32F, 0.0f, e)) return false;
@@ -123,3 +122,30 @@ bool pass_s3ho(pass_context *c, error *e)
     }
     return light(c, e);
 }
+
+static const variant_row variants[] = {
+    {.program = "s3ho", .pattern = "[BANDS3]"},
+    {.program = "s3ho_filter", .pattern = "[BANDS3]"},
+    {.program = "s3ho_light", .pattern = "[BANDS3] [LIGHT] [VISIBILITY]"},
+    {0},
+};
+
+const method method_s3ho = {
+    .name = "s3ho",
+    .summary = "spherical harmonics of the visibility, relit by a dot product (Herholz et al. 2011)",
+    .weighting = "cosine",
+    .reaches = "points within the radius, as ssdo",
+    .blind = "sharp shadows: nine coefficients hold soft ones only; the rest as ssdo",
+    .light = "spherical harmonics, relit later from stored layers",
+    .choose = "when the light will still change",
+    .options = "thickness sh-bands sh-sigma",
+    .samples = 32,
+    .blur = 2,
+    .thickness = 2.0,
+    .makes = MAKES_LIGHT | MAKES_SH,
+    .source = SEES_PICTURE,
+    .weight = WEIGHS_COSINE,
+    .reach = REACH_POINTS,
+    .variants = variants,
+    .run = run,
+};

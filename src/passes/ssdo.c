@@ -1,10 +1,9 @@
-#include "passes/ssdo.h"
-
 #include <math.h>
 
-#include "passes/variants.h"
+#include "passes/method.h"
+#include "passes/params.h"
 
-ssdo_params ssdo_params_of(const pass_context *c)
+static ssdo_params params_of(const pass_context *c)
 {
     const pass_settings *s = &c->set;
     return (ssdo_params){
@@ -17,9 +16,9 @@ ssdo_params ssdo_params_of(const pass_context *c)
     };
 }
 
-bool pass_ssdo(pass_context *c, error *e)
+static bool run(pass_context *c, error *e)
 {
-    const ssdo_params params = ssdo_params_of(c);
+    const ssdo_params params = params_of(c);
     variant v = {{0}};
     variant_add(&v, c->want_radiance, "LIGHT");
     variant_add(&v, c->want_visibility, "VISIBILITY");
@@ -34,3 +33,52 @@ bool pass_ssdo(pass_context *c, error *e)
     };
     return pass_run(c, &call, e);
 }
+
+static bool run_bounce(pass_context *c, error *e)
+{
+    // A picture the renderer lit is what surfaces send; our own radiance still needs their albedo.
+    bool exitant = !c->set.relight;
+    ssdo_params params = params_of(c);
+    params.exitant = exitant;
+    const pass_call call = {
+        .program = "ssdo_bounce",
+        PASS_PARAMS(params),
+        .reads = {{"sender_image", exitant ? &c->beauty : &c->radiance}, {"albedo_image", exitant ? &c->beauty : &c->albedo}},
+        .writes = {{"indirect_image", &c->indirect}},
+    };
+    return pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e) && pass_run(c, &call, e);
+}
+
+static const variant_row variants[] = {
+    {.program = "ssdo", .pattern = "[LIGHT] [VISIBILITY]"},
+    {.program = "ssdo_bounce", .pattern = ""},
+    {0},
+};
+
+const bounce_kind bounce_ssdo = {
+    .name = "ssdo",
+    .source = SEES_PICTURE,
+    .march = BOUNCE_APART,
+    .run = run_bounce,
+};
+
+const method method_ssdo = {
+    .name = "ssdo",
+    .summary = "a point on each direction of the hemisphere (screen-space directional occlusion, Ritschel et al. 2009)",
+    .weighting = "directions uniform in solid angle, weighted by cosine",
+    .reaches = "one point per direction, within the radius; beyond it everything is open",
+    .blind = "blockers between the points, behind other surfaces, outside the picture",
+    .light = "environment and one bounce, within the radius",
+    .choose = "to match an SSDO renderer",
+    .options = "thickness",
+    .samples = 64,
+    .blur = 4,
+    .thickness = 2.0,
+    .makes = MAKES_LIGHT,
+    .source = SEES_PICTURE,
+    .weight = WEIGHS_COSINE,
+    .reach = REACH_POINTS,
+    .bounce = &bounce_ssdo,
+    .variants = variants,
+    .run = run,
+};

@@ -4,8 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// What a method makes besides occlusion, of which each may be wanted or not.
-#define BLOCKED_BY(what) what " [BENT] [HALF_DIFFERENCE] | " what " HALF_DIFFERENCE ROUND"
+#include "passes/method.h"
 
 // The composite of a beauty, and the composite that is lit by us: its light, its background, the rest.
 #define BEHIND(light, background)                                                                                                \
@@ -13,14 +12,8 @@
     "RELIGHT ALBEDO " light " " background " [COVERAGE] [INDIRECT] [EMISSION] [DIFFUSE] [DEPTHMASK] SPECULAR [MULTIPLY_ALL]"
 #define RELIT(light) BEHIND(light, "BACKGROUND=0") " | " BEHIND(light, "BACKGROUND=1 BEAUTY") " | " BEHIND(light, "BACKGROUND=2")
 
-const variant_row variant_table[] = {
-    {"alchemy", "", false, false},
-    {"arc",
-     BLOCKED_BY("HORIZON") " | " BLOCKED_BY("BITMASK") " | " BLOCKED_BY(
-         "RUNS [PLANES]") " | "
-                          "RUNS [PLANES] LIGHT [VISIBILITY] | RUNS [PLANES] LIGHT [VISIBILITY] BOUNCE EXITANT | RUNS [PLANES] "
-                          "BOUNCE [EXITANT]",
-     false, false},
+// Of the passes that serve every method; the methods' rows name those of their own shaders.
+static const variant_row shared[] = {
     {"blur", "SCALARS=0 COLOURS=1 | SCALARS=1 COLOURS=0 | SCALARS=1 COLOURS=1 | SCALARS=2 COLOURS=0 | SCALARS=2 COLOURS=1", true,
      false},
     {"composite",
@@ -32,44 +25,42 @@ const variant_row variant_table[] = {
     {"denoise", "ACROSS | [ERRORS]", true, false},
     {"depthmask", "ACROSS | DOWN", false, false},
     {"edges", "OCCLUSION [BENT] [VISIBILITY] [RADIANCE] [INDIRECT] | SH [BANDS3]", false, false},
-    {"hbao", "", false, false},
-    {"hemisphere", "", false, false},
     {"irradiance", "", false, false},
     {"tone", "", false, false},
-    {"plane_light", "", false, false},
     {"proxies", "OCCLUSION [VECTOR] [BENT] [VISIBILITY] [RADIANCE] | SH [BANDS3] | BOUNCE", false, false},
     {"root", "", true, false},
-    {"s3ho", "[BANDS3]", false, false},
-    {"s3ho_filter", "[BANDS3]", false, false},
-    {"s3ho_light", "[BANDS3] [LIGHT] [VISIBILITY]", false, false},
     {"specular", "", false, false},
-    {"ssdo", "[LIGHT] [VISIBILITY]", false, false},
-    {"ssdo_bounce", "", false, false},
-    {"suns", "", false, false},
-    {"suns_add", "[VISIBILITY]", false, false},
-    {"surface", "[PLANES]", false, false},
     {"tile_error", "", false, false},
-    {"trace_add", "[LIGHT]", false, false},
-    {"trace_bounce", "", false, false},
-    {"trace_finish", "[BOUNCE] | LIGHT [BOUNCE] [VISIBILITY]", false, false},
-    {"trace_gather", "", false, false},
-    {"trace_grid", "", false, false},
-    {"trace_points", "FIND | SETTLE", false, false},
-    {"trace_start", "[DISTANT] | LIGHT DISTANT", false, false},
     {"upsample",
      "SCALARS=0 COLOURS=1 [OPEN_LIGHT] | SCALARS=0 COLOURS=2 [OPEN_LIGHT] | SCALARS=1 COLOURS=0 | SCALARS=1 COLOURS=1 "
      "[OPEN_LIGHT] | "
      "SCALARS=1 COLOURS=2 [OPEN_LIGHT] | SCALARS=2 COLOURS=0 | SCALARS=2 COLOURS=1 [OPEN_LIGHT] | SCALARS=2 COLOURS=2 "
      "[OPEN_LIGHT]",
      true, false},
-    {"vpl", "", false, false},
     {0},
 };
 
-const variant_row *variant_find(const char *program)
+// The row `*i` of a list; takes the rows it has off `*i` if there is none.
+static const variant_row *row_of(const variant_row *list, int *i)
 {
-    for (const variant_row *r = variant_table; r->program; r++)
-        if (strcmp(r->program, program) == 0) return r;
+    for (; list && list->program; list++)
+        if ((*i)-- == 0) return list;
+    return NULL;
+}
+
+const variant_row *variant_row_at(int i)
+{
+    const variant_row *row = row_of(shared, &i);
+    for (const method *const *m = methods; !row && *m; m++) row = row_of((*m)->variants, &i);
+    for (const bounce_kind *const *b = bounces; !row && *b; b++) row = row_of((*b)->variants, &i);
+    return row;
+}
+
+const variant_row *variant_find(const char *program, const char *words)
+{
+    const variant_row *row;
+    for (int i = 0; (row = variant_row_at(i)); i++)
+        if (strcmp(row->program, program) == 0 && variant_allowed(row, words)) return row;
     return NULL;
 }
 

@@ -1,8 +1,9 @@
 // Every shader program that a pass can ask for.
 //
-// A variant is a set of words ("RUNS PLANES BENT SCALARS=2"), each a #define of the shader. The table has one row a shader, with
-// a pattern of the sets it is asked for in; a pass that asks for another is refused. Lint, the check of GL's limits and the tests
-// that link every program walk the same table.
+// A variant is a set of words ("RUNS PLANES BENT SCALARS=2"), each a #define of the shader. A row names a shader and a
+// pattern of the sets it is asked for in; a pass that asks for another is refused. Rows of the passes that serve every method are
+// in variants.c, a method's in the method's own file (passes/method.h); several rows may name one shader. Lint, the check of GL's
+// limits and the tests that link every program walk all of them.
 #ifndef SSDO_PASSES_VARIANTS_H
 #define SSDO_PASSES_VARIANTS_H
 
@@ -17,7 +18,7 @@ typedef struct variant_row {
     bool exact;    // it is also dispatched where passes are drawn
 } variant_row;
 
-extern const variant_row variant_table[]; // ends with a NULL program
+const variant_row *variant_row_at(int i); // all rows, from 0 on; NULL after the last
 
 enum { VARIANT_TEXT = 256 };
 
@@ -30,7 +31,8 @@ typedef struct variant {
 void variant_add(variant *v, bool wanted, const char *word);
 void variant_number(variant *v, const char *word, int number); // "SCALARS=2"
 
-const variant_row *variant_find(const char *program);
+// The row that allows these words; NULL: there is none.
+const variant_row *variant_find(const char *program, const char *words);
 bool variant_allowed(const variant_row *row, const char *words);
 
 // The words as gpu_program_get takes them ("RUNS 1\nSCALARS 2\n"). False if they do not fit.

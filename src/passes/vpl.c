@@ -3,8 +3,8 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "passes/method.h"
 #include "passes/params.h"
-#include "passes/pass.h"
 
 // A surface seen at less than 3 degrees is taken to be seen at 3: rounding of the normal would else decide its area.
 static const double GRAZING = 0.05;
@@ -131,7 +131,7 @@ static bool choose(pass_context *c, vpl *lights, int *count, error *e)
     return true;
 }
 
-bool pass_vpl(pass_context *c, error *e)
+static bool run_bounce(pass_context *c, error *e)
 {
     vpl_params params = {.strength = (float)c->set.bounce_strength};
     gpu_image image = {0};
@@ -150,3 +150,14 @@ bool pass_vpl(pass_context *c, error *e)
     free(lights);
     return ok;
 }
+
+static const variant_row variants[] = {{.program = "vpl", .pattern = ""}, {0}};
+
+const bounce_kind bounce_vpl = {
+    .name = "vpl",
+    .source = SEES_PICTURE,
+    .march = BOUNCE_APART,
+    .exact = true,
+    .variants = variants,
+    .run = run_bounce,
+};

@@ -3,20 +3,48 @@
 #include <string.h>
 
 #include "cli/completion.h"
+#include "cli/options.h"
 #include "passes/method.h"
 #include "pipeline/layers.h"
 
-static void append(char *list, size_t size, const char *name)
+enum { MOST = 64 };
+
+// The values of the options whose words this program's tables hold. All zero: no values yet.
+typedef struct known_values {
+    option_value methods[MOST], bounces[MOST], layers[MOST];
+    option_values options[4];
+} known_values;
+
+static void fill(known_values *k)
 {
-    size_t used = strlen(list);
-    snprintf(list + used, size - used, "%s%s", used ? " " : "", name);
+    int n = 0;
+    for (const method *m = method_next(NULL, SEES_ANY); m && n + 1 < MOST; m = method_next(m, SEES_ANY))
+        k->methods[n++] = (option_value){m->name, m->summary};
+    n = 0;
+    k->bounces[n++].text = "none";
+    for (const bounce_kind *const *b = bounces; *b && n + 1 < MOST; b++)
+        if ((*b)->source & SEES_PICTURE) k->bounces[n++].text = (*b)->name;
+    for (int l = 0; l < LAYER_COUNT && l + 1 < MOST; l++) k->layers[l].text = layer_table[l]->name;
+    k->options[0] = (option_values){"method", k->methods, false};
+    k->options[1] = (option_values){"bounce", k->bounces, false};
+    k->options[2] = (option_values){"layers", k->layers, true};
 }
 
-void complete_write(FILE *to, const char *shell)
+void help_write(FILE *to)
 {
-    char method_list[METHOD_NAMES], layer_list[512] = "";
-    method_names(method_list, sizeof method_list, " ");
-    for (int l = 0; l < LAYER_COUNT; l++) append(layer_list, sizeof layer_list, layer_table[l]->name);
-    const completion_values values[] = {{"method", method_list, false}, {"layers", layer_list, true}, {NULL, NULL, false}};
-    completion_print(to, shell, values);
+    known_values k = {0};
+    fill(&k);
+    options_print_help(to, k.options);
+}
+
+void complete_write(FILE *to, const char *what)
+{
+    known_values k = {0};
+    fill(&k);
+    if (strcmp(what, "methods.1") == 0)
+        methods_print_man(to);
+    else if (strcmp(what, "methods.md") == 0)
+        methods_print_markdown(to);
+    else
+        completion_print(to, what, k.options);
 }

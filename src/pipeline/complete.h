@@ -1,10 +1,13 @@
-// --completion: the script for a shell, with the names of methods and layers from their tables.
+// --help and --completion: the option table, with the names that other rooms know (methods, bounces, layers).
 #ifndef SSDO_PIPELINE_COMPLETE_H
 #define SSDO_PIPELINE_COMPLETE_H
 
 #include <stdio.h>
 
-// shell: "bash" or "zsh".
-void complete_write(FILE *to, const char *shell);
+void help_write(FILE *to);
+
+// what: "bash" or "zsh", the completion script of this shell; "methods.1" or "methods.md", the table of methods for the manual or
+// for passes/README.md.
+void complete_write(FILE *to, const char *what);
 
 #endif

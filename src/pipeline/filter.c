@@ -9,21 +9,11 @@
 #include "pipeline/read_back.h"
 #include "pipeline/stopwatch.h"
 
-// The bounce that --bounce names, else the method's own.
-static bool (*bounce_of(const plan *p))(pass_context *, error *)
-{
-    const char *name = p->bounce_name ? p->bounce_name : p->method->bounce;
-    if (name && strcmp(name, "vpl") == 0) return pass_vpl;
-    if (name && strcmp(name, "raytrace") == 0) return pass_raytrace_bounce;
-    return name && strcmp(name, "arc") == 0 ? pass_arc_bounce : pass_ssdo_bounce;
-}
-
-// Whether the method's own loop makes the bounce: arc's, if it is not its own light that bounces.
+// Whether the method's own loop makes the bounce.
 static bool bounces_itself(const pass_settings *set, const plan *p)
 {
-    if (!p->bounce) return false;
-    return bounce_of(p) == pass_raytrace_bounce ||
-           (bounce_of(p) == pass_arc_bounce && p->method->run == pass_arc && !set->relight);
+    if (!p->bounce || p->estimator != p->method->bounce) return false;
+    return p->estimator->march == BOUNCE_WITH_METHOD || (p->estimator->march == BOUNCE_WITH_PICTURE && !set->relight);
 }
 
 // What the method itself makes, filtered: linear quantities all.
@@ -49,9 +39,9 @@ static bool finish_light(pass_context *c, const plan *p, error *e)
 static bool run_bounce(pass_context *c, const plan *p, error *e)
 {
     if (!p->bounce) return true;
-    if (!bounce_of(p)(c, e)) return false;
-    // The virtual lights are the same for all pixels: no noise. A method that filters itself does not filter the bounce.
-    return c->set.blur == 0 || bounce_of(p) == pass_vpl || pass_blur(c, c->set.blur, NULL, NULL, &c->indirect, e);
+    if (!p->estimator->run(c, e)) return false;
+    // A method that filters itself does not filter the bounce.
+    return c->set.blur == 0 || p->estimator->exact || pass_blur(c, c->set.blur, NULL, NULL, &c->indirect, e);
 }
 
 // The times of the small frame's passes belong to the frame.
@@ -162,7 +152,7 @@ bool filter_begin(job *j, frame_result *r, error *e)
         .want_error = p->want_error,
         .want_indirect = bounces_itself(&r->set, p),
         .want_radiance = p->want_radiance,
-        .want_visibility = p->want_visibility && p->method->fills_radiance,
+        .want_visibility = p->want_visibility && method_makes(p->method, MAKES_LIGHT),
         .gb = &gb,
         .env = j->env_loaded ? &j->env : NULL,
         .environment = j->env_image,

@@ -1,5 +1,6 @@
 #include "pipeline/plan.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "gbuffer/gbuffer.h"
@@ -36,28 +37,46 @@ static bool cannot(plan *p, const options *o, const exrio_file *file, layer_id l
 }
 
 // The mesh brings its own albedo and light: the picture's is not asked for.
-static bool traces_bounce(const plan *p, const options *o) { return !o->bounce && p->method->needs_mesh; }
+static bool traces_bounce(const plan *p) { return p->estimator && p->estimator->source == SEES_MESH; }
 
-static const char *bounce_of(const plan *p, const options *o)
+static bool find_bounce(plan *p, const options *o, error *e)
 {
-    const char *name = o->bounce ? o->bounce : p->method->bounce;
-    return name && strcmp(name, "none") != 0 ? name : NULL;
+    char all[METHOD_NAMES];
+    p->estimator = o->bounce ? bounce_find(o->bounce) : p->method->bounce;
+    if (p->estimator || !o->bounce || strcmp(o->bounce, "none") == 0) return true;
+    bounce_names(all, sizeof all, ", ");
+    return err_set(e, ERR_USAGE, NULL, NULL, "--bounce: there is no bounce '%s'; the bounces are none, %s", o->bounce, all);
+}
+
+// Of layers that only some methods make.
+static bool drop_products(plan *p, const options *o, const exrio_file *file, log_t *log, error *e)
+{
+    static const struct {
+        method_product product;
+        layer_id first, last;
+    } rows[] = {{MAKES_BENT, LAYER_BENT, LAYER_BENT}, {MAKES_SH, LAYER_SH_0, LAYER_SH_3}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char makers[METHOD_NAMES], because[METHOD_NAMES + 32];
+        if (method_makes(p->method, rows[i].product)) continue;
+        method_names(makers, sizeof makers, rows[i].product, ", ", " or ");
+        snprintf(because, sizeof because, "it takes --method %s", makers);
+        for (int l = rows[i].first; l <= (int)rows[i].last; l++)
+            if (!cannot(p, o, file, (layer_id)l, NULL, because, log, e)) return false;
+    }
+    return true;
 }
 
 static bool drop_impossible(plan *p, const options *o, const exrio_file *file, const inputs *in, log_t *log, error *e)
 {
     const char *no_bounce = o->bounce ? "--bounce none" : "this method has no bounce of its own; --bounce ssdo or vpl adds one";
-    if (!bounce_of(p, o) && !cannot(p, o, file, LAYER_INDIRECT, NULL, no_bounce, log, e)) return false;
+    if (!p->estimator && !cannot(p, o, file, LAYER_INDIRECT, NULL, no_bounce, log, e)) return false;
     const char *no_albedo = "no albedo channel was found; name it with --albedo";
     if (p->relight && !in->albedo &&
-        !((traces_bounce(p, o) || cannot(p, o, file, LAYER_INDIRECT, "albedo", no_albedo, log, e)) &&
+        !((traces_bounce(p) || cannot(p, o, file, LAYER_INDIRECT, "albedo", no_albedo, log, e)) &&
           cannot(p, o, file, LAYER_COMPOSITE, "albedo", no_albedo, log, e) &&
           cannot(p, o, file, LAYER_DIFFUSE, "albedo", no_albedo, log, e)))
         return false;
-    if (!p->method->fills_bent && !cannot(p, o, file, LAYER_BENT, NULL, "only the methods arc, gtao and bitmask make it", log, e))
-        return false;
-    for (int l = LAYER_SH_0; l <= LAYER_SH_3; l++)
-        if (!p->method->fills_sh && !cannot(p, o, file, (layer_id)l, NULL, "only --method s3ho makes it", log, e)) return false;
+    if (!drop_products(p, o, file, log, e)) return false;
     if (o->sh_bands != 3 && !cannot(p, o, file, LAYER_SH_3, NULL, "it needs --sh-bands 3", log, e)) return false;
     if (o->error <= 0.0 && !cannot(p, o, file, LAYER_ERROR, NULL, "it needs --error E", log, e)) return false;
     if (!in->roughness &&
@@ -80,10 +99,10 @@ static void step(plan *p, const char *pass, bool runs, const char *why, const ch
 static bool bounce_belongs(const plan *p, const options *o, const inputs *in, log_t *log)
 {
     if (p->relight) return true;
-    if (traces_bounce(p, o)) return false; // it is light of the environment, of which the beauty knows nothing
+    if (traces_bounce(p)) return false; // it is light of the environment, of which the beauty knows nothing
     if (!in->albedo) return false;
     if (in->diffuse_direct) return !in->diffuse_indirect;
-    if (!o->bounce || strcmp(o->bounce, "none") == 0) return false;
+    if (!o->bounce || !p->estimator) return false;
     log_warn(log, "double-bounce", "the beauty may already hold indirect light and occlusion; --bounce adds to it all the same");
     return true;
 }
@@ -92,8 +111,9 @@ static void list_steps(plan *p, const options *o, const inputs *in)
 {
     step(p, p->method->name, true, p->from_sh ? "its SH layers are read from the file" : "occlusion is always made", "");
     step(p, "irradiance", p->irradiance, "the method gives no direction: SH irradiance x occlusion",
-         p->method->fills_radiance ? "the method makes radiance itself" : "no layer needs light");
-    step(p, "blur", p->blur, "noise of the sample pattern", p->method->fills_sh ? "the method filters itself" : "--blur none");
+         method_makes(p->method, MAKES_LIGHT) ? "the method makes radiance itself" : "no layer needs light");
+    step(p, "blur", p->blur, "noise of the sample pattern",
+         method_makes(p->method, MAKES_SH) ? "the method filters itself" : "--blur none");
     step(p, "tone", p->tone, "scale, contrast and the bounds of a scalar method", "scale and contrast are 1");
     step(p, "bounce", p->bounce, "indirect light", !in->albedo && p->relight ? "no albedo" : "no layer needs it");
     step(p, "edges", p->edges, "partly covered pixels", "no layer but data of whole pixels");
@@ -110,10 +130,11 @@ static void list_steps(plan *p, const options *o, const inputs *in)
 static bool check_adaptive(const method *m, const options *o, error *e)
 {
     if (o->error <= 0.0) return true;
-    if (!m->adaptive)
-        return err_set(e, ERR_USAGE, NULL, NULL,
-                       "--error works with the methods arc, gtao and bitmask, not with %s; give it a number of --samples",
-                       m->name);
+    char able[METHOD_NAMES];
+    method_names(able, sizeof able, MAKES_ERROR, ", ", " and ");
+    if (!method_makes(m, MAKES_ERROR))
+        return err_set(e, ERR_USAGE, NULL, NULL, "--error works with the methods %s, not with %s; give it a number of --samples",
+                       able, m->name);
     if (o->half == 1)
         return err_set(e, ERR_USAGE, NULL, NULL, "--error works at full resolution; leave --resolution half or --error away");
     if (o->samples > 0 && o->samples < ROUNDS_LEAST_SAMPLES)
@@ -124,36 +145,35 @@ static bool check_adaptive(const method *m, const options *o, error *e)
 
 bool plan_make(const options *o, const exrio_file *file, const resolution *r, plan *p, log_t *log, error *e)
 {
-    const char *name = o->from_sh ? "s3ho" : o->method ? o->method : methods[METHOD_DEFAULT].name;
+    const char *name = o->from_sh ? "s3ho" : o->method ? o->method : method_default()->name;
     char all[METHOD_NAMES];
     *p = (plan){.method = method_find(name), .from_sh = o->from_sh};
-    method_names(all, sizeof all, ", ");
+    method_names(all, sizeof all, 0, ", ", ", ");
     if (!p->method)
         return err_set(e, ERR_USAGE, NULL, NULL, "--method: there is no method '%s'; the methods are %s", o->method, all);
-    if (p->method->needs_mesh && !o->mesh)
+    if (p->method->source == SEES_MESH && !o->mesh)
         return err_set(e, ERR_USAGE, NULL, NULL, "--method %s needs the scene's surfaces; name them with --mesh FILE.obj", name);
-    if (o->mesh && !p->method->needs_mesh) log_warn(log, "mesh", "--mesh is not used: only --method raytrace does");
-    if (!check_adaptive(p->method, o, e) || !layers_parse(o->layers, &p->layers, e)) return false;
+    if (o->mesh && p->method->source != SEES_MESH) log_warn(log, "mesh", "--mesh is not used: only --method raytrace does");
+    if (!find_bounce(p, o, e) || !check_adaptive(p->method, o, e) || !layers_parse(o->layers, &p->layers, e)) return false;
     inputs in = inputs_of(o, r);
     p->relight = in.env || !in.beauty;
     if (!drop_impossible(p, o, file, &in, log, e)) return false;
 
     p->composite = asked(p, LAYER_COMPOSITE) || asked(p, LAYER_DIFFUSE);
     p->visibility_mode = o->mode == MODE_VISIBILITY;
-    p->bounce_in_composite = p->composite && bounce_of(p, o) && bounce_belongs(p, o, &in, log);
-    p->bounce_name = bounce_of(p, o);
+    p->bounce_in_composite = p->composite && p->estimator && bounce_belongs(p, o, &in, log);
     p->bounce = asked(p, LAYER_INDIRECT) || p->bounce_in_composite;
     bool relit = p->composite && p->relight;
     bool light = asked(p, LAYER_RADIANCE) || (relit && !p->visibility_mode) || (p->bounce && p->relight);
-    p->want_radiance = light && p->method->fills_radiance;
+    p->want_radiance = light && method_makes(p->method, MAKES_LIGHT);
     p->want_visibility = asked(p, LAYER_VISIBILITY) || (relit && p->visibility_mode);
     p->want_bent = asked(p, LAYER_BENT);
     p->want_error = asked(p, LAYER_ERROR);
-    p->irradiance = light && !p->method->fills_radiance;
+    p->irradiance = light && !method_makes(p->method, MAKES_LIGHT);
     p->specular = in.roughness && in.env && (relit || asked(p, LAYER_SPECULAR));
-    p->light = light || (p->bounce && traces_bounce(p, o)) || p->want_visibility || p->specular;
-    p->blur = (o->blur < 0 ? p->method->blur : o->blur) > 0 && !p->method->fills_sh;
-    p->tone = o->contrast != 1.0 || o->scale != 1.0 || !p->method->fills_radiance;
+    p->light = light || (p->bounce && traces_bounce(p)) || p->want_visibility || p->specular;
+    p->blur = (o->blur < 0 ? p->method->blur : o->blur) > 0 && !method_makes(p->method, MAKES_SH);
+    p->tone = o->contrast != 1.0 || o->scale != 1.0 || !method_makes(p->method, MAKES_LIGHT);
     p->edges = true;
     p->depthmask = asked(p, LAYER_DEPTHMASK) || (p->composite && o->depthmask_strength > 0.0);
 

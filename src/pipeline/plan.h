@@ -26,8 +26,8 @@ typedef struct plan {
     bool want_radiance, want_visibility, want_bent, want_error;
     bool irradiance, blur, tone, bounce, edges, specular, depthmask, composite;
     bool bounce_in_composite;
-    bool from_sh;            // the method's SH vector is read from the file
-    const char *bounce_name; // NULL: the method's own
+    bool from_sh;                        // the method's SH vector is read from the file
+    const struct bounce_kind *estimator; // of the bounce that --bounce names, else the method's own; NULL: none
     plan_step steps[PLAN_STEPS];
     int step_count;
 } plan;

@@ -110,7 +110,7 @@ static bool warm_up(rig *r, const bench_results *b, const bench_scene *s, error 
 // All layers in one run tell the time of occlusion alone where light is but a multiplication.
 static bool tells_both(const bench_row *row)
 {
-    bool scalar = !row->m->fills_radiance && !(bench_layers(row) & 1u << LAYER_INDIRECT);
+    bool scalar = !method_makes(row->m, MAKES_LIGHT) && !(bench_layers(row) & 1u << LAYER_INDIRECT);
     return scalar || bench_layers(row) == 1u << LAYER_OCCLUSION;
 }
 
@@ -189,7 +189,7 @@ static bool do_rounds(rig *r, bench_results *b, bench_cell *cells, const char *c
 static bool measure_empty(rig *r, const bench_scene *s, double *ratio, error *e)
 {
     enum { ROUNDS = 5 };
-    const method *m = &methods[METHOD_DEFAULT];
+    const method *m = method_default();
     bench_row row = {
         .kind = ROW_METHOD, .m = m, .samples = m->samples, .blur = m->blur, .thickness = -1, .scale = 1, .contrast = 1};
     bench_scene empty = *s;

@@ -31,7 +31,7 @@ static bool run(error *e)
 {
     static rig r;
     static bench_scene scenes[BENCH_SCENES];
-    const method *m = &methods[METHOD_DEFAULT];
+    const method *m = method_default();
     int n = bench_open("samples", &r, scenes, e);
     bool ok = n > 0;
     for (size_t i = 0; ok && i < 2 * (sizeof budgets / sizeof *budgets); i++) {

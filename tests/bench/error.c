@@ -21,7 +21,7 @@ typedef struct measured {
 
 static pass_settings settings(const bench_scene *s, int budget)
 {
-    const method *m = &methods[METHOD_DEFAULT];
+    const method *m = method_default();
     bench_row row = {
         .kind = ROW_METHOD, .m = m, .samples = budget, .blur = m->blur, .thickness = -1.0, .scale = 1.0, .contrast = 1.0};
     pass_settings set = bench_settings(&row, s);
@@ -35,7 +35,7 @@ static bool measure(rig *r, const bench_scene *s, int budget, const float *limit
     frame_result f;
     // The estimate is a layer of its own, which costs a little: where time counts it is not asked for.
     unsigned layers = 1u << LAYER_OCCLUSION | (budget == 0 && round < 0 ? 1u << LAYER_ERROR : 0u);
-    if (!rig_run(r, &s->gb, &methods[METHOD_DEFAULT], &set, layers, &f, e)) return false;
+    if (!rig_run(r, &s->gb, method_default(), &set, layers, &f, e)) return false;
     if (round < 0)
         m->t = tile_errors_of(&s->gb, f.layers[LAYER_OCCLUSION], limit, f.layers[LAYER_ERROR], wanted);
     else
@@ -62,7 +62,7 @@ static double time_at(const measured *m, bool largest, double reached)
 static bool add_scene(rig *r, const bench_scene *s, int *tiles, int *within, error *e)
 {
     measured rounds = {0}, fixed[BUDGETS] = {0};
-    float *limit = tile_limit(r, &s->gb, &methods[METHOD_DEFAULT], settings(s, 64), LIMIT_SAMPLES, LIMIT_RUNS, e);
+    float *limit = tile_limit(r, &s->gb, method_default(), settings(s, 64), LIMIT_SAMPLES, LIMIT_RUNS, e);
     bool ok = limit != NULL;
     for (int round = -1; ok && round < ROUNDS; round++) {
         ok = measure(r, s, 0, limit, round, &rounds, e);

@@ -27,7 +27,10 @@ static bool drawn(const bench_row *row, const bench_summary *s, panel p)
 // One colour a method; its variants share it. Rows with blur are a curve of their own.
 static const char *colour_of(const method *m)
 {
-    return m == &method_raytrace ? RAYTRACE_COLOUR : colours[(m - methods) % COLOURS];
+    int place = 0;
+    for (const method *other = method_next(NULL, SEES_PICTURE); other && other != m; other = method_next(other, SEES_PICTURE))
+        place++;
+    return m->source == SEES_MESH ? RAYTRACE_COLOUR : colours[place % COLOURS];
 }
 static bool is_variant(const bench_row *row) { return strcmp(row->name, row->m->name) != 0; }
 static bool same_curve(const bench_row *a, const bench_row *b)
@@ -131,8 +134,8 @@ static void legend(FILE *f, const bench_results *r)
             "unset label\nset lmargin at screen 0.05\nset rmargin at screen 0.985\nset title ''\nset xlabel ''\nset ylabel ''\n"
             "unset tics\nunset border\nset key at screen 0.5, 0.10 center center horizontal maxrows 2 samplen 2 width 2\n"
             "set xrange [1:2]\nset yrange [1:2]\nplot ");
-    for (const method *m = methods; m->name; m++) legend_of(f, r, m);
-    legend_of(f, r, &method_raytrace);
+    for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE)) legend_of(f, r, m);
+    legend_of(f, r, method_find("raytrace"));
     fprintf(f, "NaN with linespoints lw 1.8 pt 4 ps 0.7 dt 2 lc rgb '#000000' title 'with its blur', "
                "NaN with linespoints lw 0.8 pt 7 ps 0.7 dt 3 lc rgb '#000000' title 'variant of a method', "
                "NaN with points pt 6 ps 1.5 lc rgb '#000000' title 'Pareto front'\n");

@@ -113,7 +113,7 @@ static int raytrace_rows(bench_row *rows)
     } list[] = {{"", 16, TRACE_EMBREE}, {"", 64, TRACE_EMBREE}, {", --trace gpu", 8, TRACE_GPU}};
     int n = 0;
     for (; n < 3; n++) {
-        rows[n] = row_of(&method_raytrace, list[n].suffix, list[n].samples, 0);
+        rows[n] = row_of(method_find("raytrace"), list[n].suffix, list[n].samples, 0);
         rows[n].trace = list[n].trace;
         rows[n].once = rows[n].standard = true;
     }
@@ -124,7 +124,7 @@ int bench_rows(bench_row *rows, int max, double scale, double contrast)
 {
     enum { MOST = 40 }; // of one method
     int n = oracles(rows);
-    for (const method *m = methods; m->name && n + 2 * MOST < max; m++) {
+    for (const method *m = method_next(NULL, SEES_PICTURE); m && n + 2 * MOST < max; m = method_next(m, SEES_PICTURE)) {
         n += method_rows(m, rows + n);
         if (strcmp(m->name, "alchemy") != 0) continue;
         for (int i = 0; i < BUDGETS - 1; i++) {

@@ -10,7 +10,7 @@
 bool bench_runs(const bench_row *row, const bench_scene *b)
 {
     if (row->kind != ROW_METHOD) return true;
-    return (!row->m->needs_mesh || b->mesh[0]) && (!row->middle || b->middle);
+    return (row->m->source != SEES_MESH || b->mesh[0]) && (!row->middle || b->middle);
 }
 
 pass_settings bench_settings(const bench_row *row, const bench_scene *b)
@@ -37,7 +37,10 @@ pass_settings bench_settings(const bench_row *row, const bench_scene *b)
     return set;
 }
 
-static const char *bounce_of(const bench_row *row) { return row->bounce ? row->bounce : row->m->bounce; }
+static const char *bounce_of(const bench_row *row)
+{
+    return row->bounce ? row->bounce : row->m->bounce ? row->m->bounce->name : NULL;
+}
 
 unsigned bench_layers(const bench_row *row)
 {
@@ -107,7 +110,7 @@ bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned laye
     r->job.sunless = *b->sunless;
     r->options.bounce = bounce_of(row);
     r->options.report = "timed"; // a report makes the passes wait and take their times
-    bool ok = (!row->m->needs_mesh || open_mesh(r, b, row, set, e)) && (!row->relit || store_sh(r, b, row, &set, e)) &&
+    bool ok = (row->m->source != SEES_MESH || open_mesh(r, b, row, set, e)) && (!row->relit || store_sh(r, b, row, &set, e)) &&
               rig_run(r, &b->gb, row->m, &set, layers, out, e);
     forget_sh(r);
     r->job.env_loaded = false;

@@ -67,7 +67,7 @@ static void print(const double *errors, int count, int digits)
 
 static bool run_variant(rig *r, const bench_scene *scenes, int n, size_t v, int seeds, error *e)
 {
-    const method *m = &methods[METHOD_DEFAULT];
+    const method *m = method_default();
     printf("| %s |", variants[v].name);
     for (size_t b = 0; b < sizeof budgets / sizeof *budgets; b++) {
         double errors[ERRORS][SEEDS_MAX];

@@ -145,7 +145,7 @@ static void equal_time(FILE *f, const bench_results *r)
     bench_summarise(r, SET_SAMPLES, s);
     int shipped = -1;
     for (int i = 0; i < r->row_count; i++)
-        if (shipped < 0 && r->rows[i].standard && r->rows[i].m == &methods[METHOD_DEFAULT]) shipped = i;
+        if (shipped < 0 && r->rows[i].standard && r->rows[i].m == method_default()) shipped = i;
     if (shipped < 0 || s[0].scenes == 0) return;
     double yards = s[shipped].yards;
     fprintf(f,
@@ -227,7 +227,7 @@ static void legend(FILE *f, const bench_results *r)
     fprintf(f,
             "\nA frame nine tenths empty costs %.1f %% of the full frame's GL time (%s, its defaults, all layers; the limit is "
             "25).\n",
-            100.0 * r->empty_ratio, methods[METHOD_DEFAULT].name);
+            100.0 * r->empty_ratio, method_default()->name);
 }
 
 bool bench_write_markdown(const bench_results *r, const char *dir, error *e)

@@ -73,7 +73,7 @@ static size_t closed_pixels(hard *h, const method *m, const plane_case *c, doubl
 static void plane_family(hard *h, const char *name, const plane_case *cases, int count)
 {
     size_t closed = 0, total = 0;
-    for (const method *m = methods; m->name; m++)
+    for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE))
         for (int i = 0; i < count; i++) {
             double worst = 0.0;
             size_t n = closed_pixels(h, m, &cases[i], &worst, &total);
@@ -155,7 +155,7 @@ static void scale(void **state)
         "**Scale**, scene and radius together: rms change of `occlusion` (powers of two: no bit of any layer changes)");
     hard_cell(t, "| method | 2^-20 | 2^-10 | 2^10 | 2^20 | 1e-6 | 1e-3 | 1e3 | 1e6 |\n| --- | --- | --- | --- | --- | --- | --- "
                  "| --- | --- |\n");
-    for (const method *m = methods; m->name; m++) {
+    for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE)) {
         frame_result a, b;
         pass_settings set = defaults(m, s.scene.radius);
         run(*state, &s.gb, m, &set, &a);
@@ -232,7 +232,7 @@ static void mirror_and_roll(void **state)
     } turns[] = {{"mirrored", true, false, false}, {"rolled by 180", true, true, false}, {"rolled by 90", false, true, true}};
     subject s = clutter();
     double mean = 0.0, ratio = 0.0;
-    for (const method *m = methods; m->name; m++) {
+    for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE)) {
         frame_result a, b, other;
         pass_settings set = defaults(m, s.scene.radius), seeded = set;
         seeded.seed = 1;
@@ -266,7 +266,7 @@ static void tiles(void **state)
 {
     static const char *const sizes[] = {"8", "24", "64", "4096"};
     subject s = clutter();
-    for (const method *m = methods; m->name; m++) {
+    for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE)) {
         frame_result a, b;
         pass_settings set = defaults(m, s.scene.radius);
         unsetenv("SSDO_TILE");

@@ -73,7 +73,7 @@ static void environments(void **state)
     int frames = 0;
     for (size_t i = 0; i < sizeof skies / sizeof *skies; i++) {
         light_with(&h->rig, &skies[i]);
-        for (const method *m = methods; m->name; m++) {
+        for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE)) {
             frame_result out;
             error e = {0};
             pass_settings set = rig_settings(m, s.radius);
@@ -102,7 +102,7 @@ static void grazing_bounce(void **state)
     static const int samples[] = {8, 64, 512, 2048};
     hard *h = *state;
     double worst = -INFINITY, lit = 0.0;
-    for (const method *m = methods; m->name; m++) {
+    for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE)) {
         if (!m->bounce) continue;
         for (size_t d = 0; d < sizeof distances / sizeof *distances; d++) {
             scene s;
@@ -117,8 +117,8 @@ static void grazing_bounce(void **state)
                 must(rig_run(&h->rig, &gb, m, &set, LIGHT | 1u << LAYER_INDIRECT, &out, &e), &e);
                 hard_check_layers(&out, "corner");
                 for (int i = 0; i < PIXELS; i++) {
-                    double blocked = strcmp(m->bounce, "arc") == 0 ? 1.0 - (double)out.layers[LAYER_RADIANCE][3 * i]
-                                                                   : 1.0 - (double)out.layers[LAYER_OCCLUSION][i];
+                    double blocked = strcmp(m->bounce->name, "arc") == 0 ? 1.0 - (double)out.layers[LAYER_RADIANCE][3 * i]
+                                                                         : 1.0 - (double)out.layers[LAYER_OCCLUSION][i];
                     worst = fmax(worst, (double)out.layers[LAYER_INDIRECT][3 * i] - 0.8 * blocked);
                     lit += (double)out.layers[LAYER_INDIRECT][3 * i];
                 }
@@ -139,7 +139,7 @@ static void furnace(void **state)
     scene_furnace(&s);
     gbuffer gb = make(&s);
     double worst = 0.0;
-    for (const method *m = methods; m->name; m++)
+    for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE))
         for (int n = 8; m->bounce && n <= 512; n *= 8) {
             frame_result out;
             error e = {0};
@@ -166,7 +166,7 @@ static void impossible_albedo(void **state)
     scene_clutter(&s);
     gbuffer gb = make(&s);
     int frames = 0;
-    for (const method *m = methods; m->name; m++)
+    for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE))
         for (size_t a = 0; m->bounce && a < sizeof albedos / sizeof *albedos; a++) {
             frame_result out;
             error e = {0};

@@ -69,7 +69,7 @@ static void list_candidates(bench *b, const char *file)
 {
     char name[PATH];
     b->count = 0;
-    for (b->row = variant_table; b->row->program; b->row++) {
+    for (int i = 0; (b->row = variant_row_at(i)); i++) {
         snprintf(name, sizeof name, "%s.comp", b->row->program);
         if (includes(name, file)) must(variant_each(b->row, add_candidate, b), NULL);
     }

@@ -44,7 +44,7 @@ static void windows(void **state)
                                  {0, 3, 63, 3},  {20, 0, 20, 47},  {-50, -40, -8, -3}, {60, 40, 66, 50},
                                  {0, 0, 52, 46}, {-3, 11, 37, 41}, {62, 46, 63, 47}};
     int frames = 0;
-    for (const method *m = methods; m->name; m++)
+    for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE))
         for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
             for (int a = 0; a < 2 + hard_whole(); a++) {
                 frame_result r;
@@ -64,7 +64,7 @@ static void windows(void **state)
 static void window_origin(void **state)
 {
     static const int shifts[][2] = {{-1000, 777}, {123456, -4}};
-    for (const method *m = methods; m->name; m++) {
+    for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE)) {
         frame_result a, b;
         exrio_file *f = window((box2){0, 0, 60, 42}, (box2){0, 0, 60, 42}, 1.0);
         set_method(*state, m, 1.0);
@@ -122,7 +122,7 @@ static void depths(void **state)
                  {"all background", nothing, 1.0},
                  {"1 to 1e10 across", steep, 0.0}};
     int bad = 0, frames = 0;
-    for (const method *m = methods; m->name; m++)
+    for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE))
         for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
             for (int own = 0; own < 2; own++) { // normals of the file, or from depth
                 frame_result r;
@@ -154,7 +154,7 @@ static void radii(void **state)
 {
     static const double pixels[] = {0.01, 0.1, 1.0, 10.0, 100.0, 10000.0};
     double open = 1.0;
-    for (const method *m = methods; m->name; m++)
+    for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE))
         for (size_t i = 0; i < sizeof pixels / sizeof *pixels; i++) {
             frame_result r;
             hard *h = *state;

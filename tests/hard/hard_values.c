@@ -81,7 +81,7 @@ static void every_value(void **state)
     hard *h = *state;
     int ran = 0, refused = 0;
     double worst = 0.0;
-    for (const method *m = methods; m->name; m++) {
+    for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE)) {
         frame_result clean, r;
         set_method(h, m);
         exrio_file *f = clutter();
@@ -91,7 +91,8 @@ static void every_value(void **state)
         for (int c = 0; c < CHANNELS; c++)
             for (int v = 0; v < VALUES; v++)
                 for (int share = 1; share <= 97; share += 48) {
-                    if (!hard_whole() && (c + v + share) % (m == methods ? 3 : 11)) continue; // the share of the fast subset
+                    if (!hard_whole() && (c + v + share) % (m == method_default() ? 3 : 11))
+                        continue; // the share of the fast subset
                     bool ok = spoil(h, c, values[v], share, &r);
                     ran += ok, refused += !ok;
                     double rms = ok && share == 1 ? hard_compare(&clean, &r, LAYER_OCCLUSION, NULL).rms : 0.0;
@@ -123,7 +124,7 @@ static void warnings_say_the_share(void **state)
                  {8, NAN, 3, "bad-colours"}};
     hard *h = *state;
     frame_result r;
-    set_method(h, methods);
+    set_method(h, method_default());
     exrio_file *f = clutter();
     forget_warnings(h);
     hard_run(h, f, &r);
@@ -200,7 +201,7 @@ static void wrong_normals(void **state)
     hard_cell(t, "\n| --- | --- | --- | --- | --- | --- | --- | --- |\n");
     double worst = 0.0;
     int bad = 0;
-    for (const method *m = methods; m->name; m++) {
+    for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE)) {
         frame_result clean, r;
         set_method(h, m);
         exrio_file *f = clutter();

@@ -35,6 +35,11 @@ pass_settings rig_settings(const method *m, double radius)
                            .relight = true};
 }
 
+static const bounce_kind *estimator_of(const method *m, const char *name)
+{
+    return name ? bounce_find(name) : m->bounce ? m->bounce : bounce_find("ssdo");
+}
+
 bool rig_run(rig *r, const gbuffer *gb, const method *m, const pass_settings *set, unsigned layers, frame_result *out, error *e)
 {
     bool bounce = layers & 1u << LAYER_INDIRECT;
@@ -44,15 +49,15 @@ bool rig_run(rig *r, const gbuffer *gb, const method *m, const pass_settings *se
     out->set.world_from_camera = gb->camera.has_world ? gb->camera.world_from_camera : m3_identity();
     out->plan = (plan){.method = m,
                        .layers = layers,
-                       .want_radiance = light && m->fills_radiance,
+                       .want_radiance = light && method_makes(m, MAKES_LIGHT),
                        .want_error = layers & 1u << LAYER_ERROR,
                        .want_bent = layers & 1u << LAYER_BENT,
                        .want_visibility = layers & 1u << LAYER_VISIBILITY,
-                       .irradiance = light && !m->fills_radiance,
-                       .blur = set->blur > 0 && !m->fills_sh,
-                       .tone = set->contrast != 1.0 || set->scale != 1.0 || !m->fills_radiance,
+                       .irradiance = light && !method_makes(m, MAKES_LIGHT),
+                       .blur = set->blur > 0 && !method_makes(m, MAKES_SH),
+                       .tone = set->contrast != 1.0 || set->scale != 1.0 || !method_makes(m, MAKES_LIGHT),
                        .depthmask = layers & 1u << LAYER_DEPTHMASK,
-                       .bounce_name = r->options.bounce,
+                       .estimator = estimator_of(m, r->options.bounce),
                        .bounce = bounce};
     return filter_frame(&r->job, out, e);
 }

@@ -60,14 +60,12 @@ int main(int argc, char **argv)
     listing l = {.folder = argc == 4 && strcmp(argv[1], "files") == 0 ? argv[2] : NULL};
     if (!l.folder && !(argc == 2 && strcmp(argv[1], "stream") == 0)) return 2;
     l.habits.read_images = l.folder && strcmp(argv[3], "image") == 0;
-    int total = 0;
-    for (l.row = variant_table; l.row->program; l.row++, total += l.count) {
-        l.count = 0;
+    for (int i = 0; (l.row = variant_row_at(i)); i++) {
         for (int drawn = 0; drawn <= l.row->drawable; drawn++) {
             l.drawn = drawn;
             if (!variant_each(l.row, visit, &l)) return 1;
         }
     }
-    fprintf(stderr, "%d\n", total);
+    fprintf(stderr, "%d\n", l.count);
     return 0;
 }

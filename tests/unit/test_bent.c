@@ -41,8 +41,8 @@ static void empty_plane_gives_the_normal(void **state)
     rig r;
     error e = {0};
     must(rig_open(&r, NULL, &e), &e);
-    for (const method *m = methods; m->name; m++)
-        for (size_t t = 0; m->fills_bent && t < sizeof tilts / sizeof *tilts; t++)
+    for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE))
+        for (size_t t = 0; method_makes(m, MAKES_BENT) && t < sizeof tilts / sizeof *tilts; t++)
             for (int kind = 0; kind < 3; kind++) {
                 scene s = {0};
                 frame_result out;

@@ -309,7 +309,8 @@ static void relit_composite(rig *r, gbuffer *gb, bool all, double amount, float 
     set.world_from_camera = m3_identity();
     pass_context c = {.g = &r->job.g, .log = &r->log, .set = set, .gb = gb, .env = &r->job.env, .environment = r->job.env_image};
     must(pass_begin(&c, &e), &e);
-    must(pass_hemisphere(&c, &e) && pass_irradiance(&c, &e) && pass_specular(&c, &e) && pass_composite(&c, &e), &e);
+    must(method_find("hemisphere")->run(&c, &e) && pass_irradiance(&c, &e) && pass_specular(&c, &e) && pass_composite(&c, &e),
+         &e);
     gpu_image_download(c.g, &c.occlusion, occlusion);
     gpu_image_download(c.g, &c.specular, specular);
     gpu_image_download(c.g, &c.composite, composite);

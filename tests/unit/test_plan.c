@@ -36,7 +36,7 @@ static options options_of(const method *m, const char *layers, unsigned inputs)
     options_defaults(&o);
     o.method = m->name;
     o.layers = layers;
-    if (m->needs_mesh) o.mesh = "scene.obj";
+    if (m->source == SEES_MESH) o.mesh = "scene.obj";
     if (inputs & ENV) o.env = "sky.exr";
     return o;
 }
@@ -59,7 +59,7 @@ static bool can_be_made(layer_id l, const method *m, unsigned inputs)
     bool albedo = inputs & ALBEDO;
     switch (l) {
     case LAYER_INDIRECT:
-        return m->bounce && (albedo || !relit || m->needs_mesh);
+        return m->bounce && (albedo || !relit || m->source == SEES_MESH);
     case LAYER_COMPOSITE:
         return albedo || !relit;
     case LAYER_DIFFUSE:
@@ -67,11 +67,11 @@ static bool can_be_made(layer_id l, const method *m, unsigned inputs)
     case LAYER_SPECULAR:
         return inputs & ROUGHNESS && inputs & ENV;
     case LAYER_BENT:
-        return m->fills_bent;
+        return method_makes(m, MAKES_BENT);
     case LAYER_SH_0:
     case LAYER_SH_1:
     case LAYER_SH_2:
-        return m->fills_sh;
+        return method_makes(m, MAKES_SH);
     case LAYER_SH_3: // --sh-bands 3
     case LAYER_ERROR:
         return false; // --error
@@ -108,7 +108,7 @@ static void every_layer_alone(void **state)
     (void)state;
     const method *m;
     int made = 0, refused = 0;
-    for (int i = 0; (m = method_at(i)); i++)
+    for (m = method_next(NULL, SEES_ANY); m; m = method_next(m, SEES_ANY))
         for (unsigned inputs = 0; inputs < SETS; inputs++)
             for (int l = 0; l < LAYER_COUNT; l++) {
                 plan p;
@@ -146,7 +146,7 @@ static void default_layers_are_those_that_can_be_made(void **state)
 {
     (void)state;
     const method *m;
-    for (int i = 0; (m = method_at(i)); i++)
+    for (m = method_next(NULL, SEES_ANY); m; m = method_next(m, SEES_ANY))
         for (unsigned inputs = 0; inputs < SETS; inputs++) {
             plan p;
             error e;
@@ -197,11 +197,18 @@ static void what_cannot_be_together_is_refused(void **state)
     o.method = "none";
     assert_false(planned(&o, 0, &p, &e));
     assert_int_equal(e.code, ERR_USAGE);
-    for (int i = 0; method_at(i); i++) assert_non_null(strstr(e.message, method_at(i)->name));
-    for (int i = 0; method_at(i); i++) { // --error
-        o = options_of(method_at(i), "occlusion,error", 0);
+    for (const method *m = method_next(NULL, SEES_ANY); m; m = method_next(m, SEES_ANY))
+        assert_non_null(strstr(e.message, m->name));
+    o = options_of(method_find("arc"), "occlusion", 0);
+    o.bounce = "none such";
+    assert_false(planned(&o, 0, &p, &e));
+    assert_int_equal(e.code, ERR_USAGE);
+    for (const bounce_kind *const *b = bounces; *b; b++)
+        assert_int_equal(strstr(e.message, (*b)->name) != NULL, (*b)->source == SEES_PICTURE);
+    for (const method *m = method_next(NULL, SEES_ANY); m; m = method_next(m, SEES_ANY)) { // --error
+        o = options_of(m, "occlusion,error", 0);
         o.error = 0.02;
-        assert_int_equal(planned(&o, 0, &p, &e), method_at(i)->adaptive);
+        assert_int_equal(planned(&o, 0, &p, &e), method_makes(m, MAKES_ERROR));
     }
     o = options_of(method_find("raytrace"), "occlusion", 0);
     o.mesh = NULL;

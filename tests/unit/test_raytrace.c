@@ -73,7 +73,7 @@ static void corner_close(corner *c)
 
 static pass_settings settings(double radius, int samples, int backend)
 {
-    pass_settings set = rig_settings(&method_raytrace, radius);
+    pass_settings set = rig_settings(method_find("raytrace"), radius);
     set.mesh = mesh_path();
     set.mesh_axes = -1;
     set.trace = backend;
@@ -92,7 +92,7 @@ static void corner_is_the_closed_form(void **state)
         error e = {0};
         corner_open(&c, true, run & 1, run & 2);
         pass_settings set = settings(c.s.radius, 256, backends[run / 4]);
-        must(rig_run(&c.r, &c.gb, &method_raytrace, &set, ALL, &out, &e), &e);
+        must(rig_run(&c.r, &c.gb, method_find("raytrace"), &set, ALL, &out, &e), &e);
         double worst = 0.0, distance = 0.0, off = 0.0, light = 0.0, bounce = 0.0, n = 0.0;
         for (int i = 0; i < WIDTH * HEIGHT; i++) {
             hit h;
@@ -130,14 +130,14 @@ static void foreign_mesh_is_refused(void **state)
     c.gb.camera.origin = v3_add(c.gb.camera.origin, v3(0, 0.3, 0.3)); // neither of its surfaces fits now
     pass_settings set = settings(c.s.radius, 1, TRACE_EMBREE);
     set.mesh_axes = 0;
-    assert_false(rig_run(&c.r, &c.gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e));
+    assert_false(rig_run(&c.r, &c.gb, method_find("raytrace"), &set, 1 << LAYER_OCCLUSION, &out, &e));
     assert_int_equal(e.code, ERR_INPUT);
     assert_string_equal(e.file, mesh_path());
     assert_non_null(strstr(e.message, "--mesh-axes"));
     rig_free_result(&out);
     c.gb.camera.has_world = false;
     e = (error){0};
-    assert_false(rig_run(&c.r, &c.gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e));
+    assert_false(rig_run(&c.r, &c.gb, method_find("raytrace"), &set, 1 << LAYER_OCCLUSION, &out, &e));
     assert_non_null(strstr(e.message, "--camera"));
     rig_free_result(&out);
     corner_close(&c);
@@ -155,13 +155,13 @@ static void missing_module_is_named(void **state)
     setenv("SSDO_PLUGIN_DIR", "/nowhere", 1);
     corner_open(&c, false, false, false);
     pass_settings set = settings(c.s.radius, 1, TRACE_EMBREE);
-    assert_false(rig_run(&c.r, &c.gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e));
+    assert_false(rig_run(&c.r, &c.gb, method_find("raytrace"), &set, 1 << LAYER_OCCLUSION, &out, &e));
     assert_int_equal(e.code, ERR_USAGE);
     assert_non_null(strstr(e.message, "ssdo-trace.so"));
     rig_free_result(&out);
     e = (error){0};
     set.trace = TRACE_AUTO;
-    must(rig_run(&c.r, &c.gb, &method_raytrace, &set, 1 << LAYER_OCCLUSION, &out, &e), &e);
+    must(rig_run(&c.r, &c.gb, method_find("raytrace"), &set, 1 << LAYER_OCCLUSION, &out, &e), &e);
     assert_null(c.r.job.trace.cpu);
     rig_free_result(&out);
     corner_close(&c);
@@ -183,7 +183,7 @@ static void nothing_becomes_nan(void **state)
             if (i % 5 == 0) memset(c.gb.normal + 4 * i, 0, 3 * sizeof *c.gb.normal);
         }
         pass_settings set = settings(c.s.radius, 4, backends[b]);
-        must(rig_run(&c.r, &c.gb, &method_raytrace, &set, ALL, &out, &e), &e);
+        must(rig_run(&c.r, &c.gb, method_find("raytrace"), &set, ALL, &out, &e), &e);
         for (int i = 0; i < WIDTH * HEIGHT; i++) {
             float o = out.layers[LAYER_OCCLUSION][i];
             assert_true(o >= 0.0f && o <= 1.0f);
