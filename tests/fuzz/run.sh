@@ -51,9 +51,9 @@ go() { # TARGET SECONDS MAX_LENGTH
     nice -n "${FUZZ_NICE:-19}" "$build/fuzz_$1" "$build/corpus-$1" -max_total_time="$2" -rss_limit_mb=2048 -timeout="${FUZZ_TIMEOUT:-10}" -max_len="$3" -print_final_stats=1 \
         -artifact_prefix="$build/crashes/" >"$build/$1.log" 2>&1 || code=$?
     cpu
-    runs=$(sed -n 's/^stat::number_of_executed_units: //p' "$build/$1.log")
-    peak=$(sed -n 's/^stat::peak_rss_mb: *//p' "$build/$1.log")
-    edges=$(grep -o 'cov: [0-9]*' "$build/$1.log" | tail -1 | cut -c6-)
+    runs=$(sed -n 's/^stat::number_of_executed_units: //p' "$build/$1.log" | tail -1)
+    peak=$(sed -n 's/^stat::peak_rss_mb: *//p' "$build/$1.log" | tail -1)
+    edges=$(grep -ao 'cov: [0-9]*' "$build/$1.log" | tail -1 | cut -c6-)
     echo "figure: fuzz_$1: ${runs:-no} executions in $2 s ($((used - before)) s of processor time), ${edges:-0} edges covered, peak ${peak:-?} MB, $([ $code = 0 ] && echo 0 crashes || echo CRASHED)"
     [ $code = 0 ] || { tail -40 "$build/$1.log"; exit 1; }
 }
