@@ -25,6 +25,13 @@ void arc_grid(int samples, int *slices, int *steps)
     *steps = samples / (2 * *slices) > 1 ? samples / (2 * *slices) : 1;
 }
 
+bool arc_has_half_difference(const pass_settings *set)
+{
+    int slices, steps;
+    arc_grid(set->samples, &slices, &steps);
+    return slices >= LEAST_FOR_HALF_DIFFERENCE && set->blur > 0;
+}
+
 void arc_set_grid(arc_params *p, int slices, int steps)
 {
     p->slices = slices, p->steps = steps;
@@ -97,27 +104,6 @@ static bool make_planes(pass_context *c, error *e)
     return true;
 }
 
-// ---- light
-
-// Takes the suns out of the environment, once a batch.
-static bool make_sunless(pass_context *c, error *e)
-{
-    pass_sunless *l = c->sunless;
-    if (l->ready || !c->env || c->env->white) return true;
-    environment rest;
-    if (!sun_split(c->env, c->threads, &l->suns, &rest, c->log, e)) return false;
-    if (l->suns.count > 0) {
-        memcpy(l->rest, rest.sh, sizeof l->rest);
-        bool ok = pass_upload_environment(c->g, &rest, &l->map, e);
-        environment_free(&rest);
-        if (!ok) return false;
-        log_info(c->log, "environment: %d small bright source%s treated apart", l->suns.count,
-                 l->suns.count > 1 ? "s are" : " is");
-    }
-    l->ready = true;
-    return true;
-}
-
 // ---- the passes
 
 variant arc_variant(const pass_context *c, const char *what)
@@ -169,7 +155,7 @@ bool arc_run_occlusion(pass_context *c, const char *what, error *e)
 {
     if (c->set.error > 0.0) return arc_run_adaptive(c, what, e) && (!c->want_bent || run_bent(c, what, e));
     const arc_params params = arc_params_of(c);
-    bool half_difference = params.slices >= LEAST_FOR_HALF_DIFFERENCE && c->set.blur > 0;
+    bool half_difference = arc_has_half_difference(&c->set);
     variant v = arc_variant(c, what);
     variant_add(&v, c->want_bent, "BENT");
     variant_add(&v, half_difference, "HALF_DIFFERENCE");
@@ -209,7 +195,7 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
     const gpu_image *sender = exitant ? &c->beauty : &c->radiance, *albedo = exitant ? &c->beauty : &c->albedo;
     arc_params params = arc_unlimited_params_of(c);
     params.exitant = exitant;
-    if (sky && (!make_sunless(c, e) || !pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e))) return false;
+    if (sky && (!pass_split_suns(c, e) || !pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e))) return false;
     if (visibility && !pass_make(c, &c->visibility, GL_R32F, 1.0f, e)) return false;
     if (bounce && (!light_planes(c, &params, sender, albedo, e) || !pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e)))
         return false;
@@ -278,7 +264,7 @@ const method method_arc = {
     .samples = 64,
     .blur = 4,
     .thickness = 0.15,
-    .makes = MAKES_LIGHT | MAKES_BENT | MAKES_ERROR,
+    .makes = MAKES_LIGHT | MAKES_LIGHT_WITHOUT_SUNS | MAKES_BENT | MAKES_ERROR,
     .source = SEES_PICTURE,
     .weight = WEIGHS_COSINE,
     .reach = REACH_SURFACES,

@@ -8,6 +8,8 @@
 
 // Slices and steps a side for a number of samples = slices x 2 x steps.
 void arc_grid(int samples, int *slices, int *steps);
+// Whether the occlusion comes with its half-difference, by which pass_denoise knows its noise.
+bool arc_has_half_difference(const pass_settings *set);
 arc_params arc_params_of(const pass_context *c);
 // For marches without a radius: light comes from any distance.
 arc_params arc_unlimited_params_of(const pass_context *c);

@@ -18,10 +18,11 @@ typedef enum method_source {
 
 // What it makes beside occlusion; bits. Without MAKES_LIGHT radiance is the SH irradiance times the occlusion.
 typedef enum method_product {
-    MAKES_LIGHT = 1 << 0, // radiance and visibility
-    MAKES_BENT = 1 << 1,  // the layer bent
-    MAKES_ERROR = 1 << 2, // samples until an error is reached: --error
-    MAKES_SH = 1 << 3,    // the layers sh_*; it filters its samples itself
+    MAKES_LIGHT = 1 << 0,              // radiance and visibility
+    MAKES_BENT = 1 << 1,               // the layer bent
+    MAKES_ERROR = 1 << 2,              // samples until an error is reached: --error
+    MAKES_LIGHT_WITHOUT_SUNS = 1 << 4, // with MAKES_LIGHT: those of the environment are left to pass_suns
+    MAKES_SH = 1 << 3,                 // the layers sh_*; it filters its samples itself
 } method_product;
 
 // How occlusion weighs directions, and what blocks them. WEIGHS_OWN is a look: no closed form holds it.

@@ -37,10 +37,10 @@ static void fill_block(frame_block *b, const gbuffer *gb, const environment *env
         for (int c = 0; c < 3; c++) b->sh[i][c] = (float)env->sh[i][c];
 }
 
-static const float *pixels_of(const gbuffer *gb, const image_row *row)
+const float *pass_pixels(const gbuffer *gb, image_id id)
 {
     const float *pixels;
-    memcpy(&pixels, (const char *)gb + row->pixels, sizeof pixels);
+    memcpy(&pixels, (const char *)gb + image_table[id].pixels, sizeof pixels);
     return pixels;
 }
 
@@ -57,7 +57,7 @@ static bool upload(pass_context *c, image_id id, const float *pixels, error *e)
 static bool upload_all(pass_context *c, error *e)
 {
     for (int i = 0; i < IMAGE_COUNT; i++) {
-        const float *pixels = image_table[i].given ? pixels_of(c->gb, &image_table[i]) : NULL;
+        const float *pixels = image_table[i].given ? pass_pixels(c->gb, (image_id)i) : NULL;
         if (pixels && !upload(c, (image_id)i, pixels, e)) return false;
     }
     return true;

@@ -136,6 +136,9 @@ void pass_end(pass_context *c);
 // A context with all that the caller of pass_begin gave to `c`, for another G-buffer and other settings; not begun.
 pass_context pass_like(const pass_context *c, const gbuffer *gb, const pass_settings *set);
 
+// What the G-buffer holds of an image that it gives; NULL: nothing.
+const float *pass_pixels(const gbuffer *gb, image_id id);
+
 // The environment's texture, once per batch. The white environment has none: out->id stays 0.
 bool pass_upload_environment(gpu *g, const environment *env, gpu_image *out, error *e);
 
@@ -194,6 +197,7 @@ bool pass_add_group(const pass_context *c, unsigned group, variant *words, pass_
 
 // ---- the passes that serve every method (passes/method.h), one file and one shader each
 
+bool pass_split_suns(pass_context *c, error *e); // takes the suns out of the environment, once a batch
 bool pass_suns(pass_context *c, error *e); // radiance, visibility: in place, if their suns are apart
 // The occlusion by a filter that knows its noise from `half_difference`; other pictures by one that does not.
 typedef struct pass_denoising {

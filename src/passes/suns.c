@@ -1,4 +1,5 @@
 #include <math.h>
+#include <string.h>
 
 #include "base/threads.h"
 #include "passes/arc.h"
@@ -60,6 +61,24 @@ static void put_suns(const pass_context *c, arc_params *p)
     }
     for (int i = 0; i < 9; i++)
         for (int k = 0; k < 3; k++) p->rest[i][k] = (float)c->sunless->rest[i][k];
+}
+
+bool pass_split_suns(pass_context *c, error *e)
+{
+    pass_sunless *l = c->sunless;
+    if (l->ready || !c->env || c->env->white) return true;
+    environment rest;
+    if (!sun_split(c->env, c->threads, &l->suns, &rest, c->log, e)) return false;
+    if (l->suns.count > 0) {
+        memcpy(l->rest, rest.sh, sizeof l->rest);
+        bool ok = pass_upload_environment(c->g, &rest, &l->map, e);
+        environment_free(&rest);
+        if (!ok) return false;
+        log_info(c->log, "environment: %d small bright source%s treated apart", l->suns.count,
+                 l->suns.count > 1 ? "s are" : " is");
+    }
+    l->ready = true;
+    return true;
 }
 
 bool pass_suns(pass_context *c, error *e)

@@ -1,6 +1,7 @@
 #include "pipeline/explain.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "base/text.h"
@@ -9,8 +10,9 @@
 #include "gbuffer/conventions.h"
 #include "gbuffer/radius.h"
 #include "pipeline/batch.h"
-#include "pipeline/frame.h"
+#include "pipeline/filter.h"
 #include "pipeline/inputs.h"
+#include "pipeline/settings.h"
 #include "plugin/colour.h"
 
 static void heading(FILE *to, const char *text) { text_print(to, "\n%s\n", text); }
@@ -69,11 +71,21 @@ static void explain_colour(const options *o, const frame_result *r, FILE *to)
     text_print(to, "  OpenColorIO config: %s\n", config ? config : "none (--ocio, $OCIO)");
 }
 
-static void explain_plan(const frame_result *r, FILE *to)
+// Without the environment's pixels nobody knows whether it has suns.
+static void explain_plan(const job *j, frame_result *r, FILE *to)
 {
     heading(to, "what would run");
-    for (int i = 0; i < r->plan.step_count; i++)
-        text_print(to, "  %-12s %s: %s\n", r->plan.steps[i].pass, r->plan.steps[i].runs ? "yes" : "no", r->plan.steps[i].why);
+    r->set = settings_of(j, r, settings_radius(j, &r->gb));
+    filter_list(r, false, &r->steps);
+    for (int i = 0; i < r->steps.count; i++) {
+        const plan_step *s = &r->steps.steps[i];
+        bool open = strcmp(s->pass, "suns") == 0 && j->o->env && steps_split_suns(&r->plan);
+        text_print(to, "  %-12s %s: %s\n", s->pass,
+                   s->runs ? "yes"
+                   : open  ? "?"
+                           : "no",
+                   open ? "if the environment has small bright sources" : s->why);
+    }
     text_print(to, "  layers:");
     for (int l = 0; l < LAYER_COUNT; l++)
         if (r->plan.layers & 1u << l) text_print(to, " %s", layer_table[l]->name);
@@ -106,15 +118,15 @@ static bool explain_files(const options *o, const input_paths *in, FILE *to, err
         explain_json(&r, ok, &log, e, to);
         goto out;
     }
-    for (int i = 0; i < in->count; i++) text_print(to, "%s\n", in->list[i]);
-    for (const frame_result *v = &r; v && v->file && v->resolution.convention; v = v->next_view) {
-        if (v->view) text_print(to, "\nview %s\n", v->view);
+    for (int i = 0; i < in->count; i++) fprintf(to, "%s\n", in->list[i]);
+    for (frame_result *v = &r; v && v->file && v->resolution.convention; v = v->next_view) {
+        if (v->view) fprintf(to, "\nview %s\n", v->view);
         explain_renderer(v, to);
         explain_roles(v, to);
         if (!ok) continue;
         explain_evidence(v, to);
         explain_colour(o, v, to);
-        explain_plan(v, to);
+        explain_plan(&j, v, to);
     }
     if (log.warning_count) heading(to, "warnings");
     for (int i = 0; i < log.warning_count; i++) text_print(to, "  %s\n", log.warnings[i]);

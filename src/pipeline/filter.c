@@ -1,48 +1,10 @@
 #include "pipeline/filter.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/mem.h"
 #include "gbuffer/half.h"
 #include "pipeline/read_back.h"
 #include "pipeline/stopwatch.h"
-
-// Whether the method's own loop makes the bounce.
-static bool bounces_itself(const pass_settings *set, const plan *p)
-{
-    if (!p->bounce || p->estimator != p->method->bounce) return false;
-    return p->estimator->march == BOUNCE_WITH_METHOD || (p->estimator->march == BOUNCE_WITH_PICTURE && !set->relight);
-}
-
-// What the method itself makes, filtered: linear quantities all.
-static bool run_method(pass_context *c, const plan *p, error *e)
-{
-    if (!p->method->run(c, e)) return false;
-    if (!p->blur) return true;
-    if (c->half_difference.id && !c->denoised && !pass_denoise(c, e)) return false;
-    gpu_image *plain = c->denoised ? NULL : &c->occlusion;
-    if ((plain || c->visibility.id || c->radiance.id) && !pass_blur(c, c->set.blur, plain, &c->visibility, &c->radiance, e))
-        return false;
-    return !c->bent.id || pass_blur(c, c->set.blur, NULL, NULL, &c->bent, e);
-}
-
-static bool finish_light(pass_context *c, const plan *p, error *e)
-{
-    if (!pass_proxies(c, e)) return false;
-    if (p->tone && !pass_tone(c, &c->occlusion, e)) return false;
-    if (p->tone && c->visibility.id && !pass_tone(c, &c->visibility, e)) return false;
-    return !p->irradiance || pass_irradiance(c, e);
-}
-
-static bool run_bounce(pass_context *c, const plan *p, error *e)
-{
-    if (!p->bounce) return true;
-    if (!p->estimator->run(c, e)) return false;
-    // A method that filters itself does not filter the bounce.
-    return c->set.blur == 0 || p->estimator->exact || pass_blur(c, c->set.blur, NULL, NULL, &c->indirect, e);
-}
 
 // The times of the small frame's passes belong to the frame.
 static void take_times(pass_context *c, const pass_context *small)
@@ -55,42 +17,76 @@ static void take_times(pass_context *c, const pass_context *small)
 static bool halve(const job *j, frame_result *r, error *e)
 {
     gbuffer whole = r->gb; // borrows its arrays
+    image_set given = steps_given_small(&r->plan, &r->set, steps_given(&whole));
     if (r->uncovered) whole.coverage = NULL;
-    // What the bounce gathers; nothing else at half size looks at colours.
-    if (!r->plan.bounce) whole.albedo = NULL;
-    if (!r->plan.bounce || r->set.relight) whole.beauty = NULL;
+    if (!(given & IMAGE_BIT(IMAGE_ALBEDO))) whole.albedo = NULL;
+    if (!(given & IMAGE_BIT(IMAGE_BEAUTY))) whole.beauty = NULL;
     return gbuffer_halve(&whole, j->threads, &r->half, e);
 }
 
-static bool run_half(pass_context *c, const gbuffer *half, const plan *p, error *e)
+// ---- the list of steps, run
+
+// The frame, and while steps run on it the one of half its size.
+typedef struct runner {
+    pass_context *whole, small;
+    const gbuffer *half;
+    bool open; // small is
+} runner;
+
+static bool open_small(runner *r, error *e)
 {
-    pass_settings set = c->set;
+    pass_settings set = r->whole->set;
     set.blur = (set.blur + 1) / 2; // as wide on the surface as at full size
-    pass_context small = pass_like(c, half, &set);
-    if (!pass_begin(&small, e)) return false;
-    bool ok = run_method(&small, p, e);
-    // All layers go up together, unless the bounce needs what is done to them at either size.
-    bool early =
-        p->bounce && c->set.relight && (p->tone || p->irradiance || (c->proxies && c->proxies->count > 0) || small.suns_apart);
-    ok = ok && (!early || pass_upsample(c, &small, ~0u, e));
-    if (ok && p->bounce) ok = (!early || (pass_suns(&small, e) && finish_light(&small, p, e))) && run_bounce(&small, p, e);
-    ok = ok && (early ? pass_upsample(c, &small, IMAGE_BIT(IMAGE_INDIRECT), e) : pass_upsample(c, &small, ~0u, e));
-    take_times(c, &small);
-    pass_end(&small);
-    return ok && pass_suns(c, e) && finish_light(c, p, e);
+    r->small = pass_like(r->whole, r->half, &set);
+    r->open = pass_begin(&r->small, e);
+    return r->open;
 }
 
-static bool run_passes(pass_context *c, const gbuffer *half, const plan *p, error *e)
+static void close_small(runner *r)
 {
-    if (c->set.half ? !run_half(c, half, p, e)
-                    : !(run_method(c, p, e) && pass_suns(c, e) && finish_light(c, p, e) && run_bounce(c, p, e)))
-        return false;
-    // A beauty's light on unseen spheres is unknown: they send none.
-    if (p->bounce && c->set.relight && !pass_proxies_bounce(c, e)) return false;
-    if (p->edges && c->coverage.id && !pass_edges(c, e)) return false;
-    if (p->specular && !pass_specular(c, e)) return false;
-    if (p->depthmask && !pass_depthmask(c, e)) return false;
-    return !p->composite || pass_composite(c, e);
+    if (!r->open) return;
+    take_times(r->whole, &r->small);
+    pass_end(&r->small);
+    r->open = false;
+}
+
+static bool are_there(const pass_context *c, image_set images, const char *pass, const char *what, error *e)
+{
+    for (int i = 0; i < IMAGE_COUNT; i++)
+        if (images & IMAGE_BIT(i) && !c->image[i].id)
+            return err_set(e, ERR_GL, NULL, NULL, "the pass '%s' %s the picture '%s', which is not there", pass, what,
+                           image_table[i].name);
+    return true;
+}
+
+static bool run_step(runner *r, const plan_step *s, error *e)
+{
+    if (s->size == STEP_SMALL && !r->open && !open_small(r, e)) return false;
+    pass_context *c = s->size == STEP_SMALL ? &r->small : r->whole;
+    const pass_context *from = s->size == STEP_WHOLE ? r->whole : &r->small;
+    return are_there(from, s->reads, s->pass, "reads", e) &&
+           (s->size == STEP_UP ? pass_upsample(c, from, s->writes, e) : s->run(c, s, e)) &&
+           are_there(c, s->writes, s->pass, "did not make", e);
+}
+
+static bool small_is_needed(const step_list *l, int after)
+{
+    for (int i = after + 1; i < l->count; i++)
+        if (l->steps[i].runs && l->steps[i].size != STEP_WHOLE) return true;
+    return false;
+}
+
+static bool run_steps(pass_context *c, const gbuffer *half, const step_list *l, error *e)
+{
+    runner r = {.whole = c, .half = half};
+    bool ok = true;
+    for (int i = 0; ok && i < l->count; i++) {
+        if (!l->steps[i].runs) continue;
+        ok = run_step(&r, &l->steps[i], e);
+        if (!small_is_needed(l, i)) close_small(&r);
+    }
+    close_small(&r);
+    return ok;
 }
 
 static void take_adaptive(const job *j, frame_result *r, const adaptive_sampling *rounds)
@@ -119,6 +115,26 @@ bool filter_prepare(const job *j, frame_result *r, error *e)
     if (!r->prepared) r->uncovered = !needs_coverage(&r->gb);
     r->prepared = true;
     return !r->set.half || r->half.depth || halve(j, r, e);
+}
+
+void filter_list(const frame_result *r, bool suns, step_list *out)
+{
+    image_set given = steps_given(&r->gb);
+    bool uncovered = r->prepared ? r->uncovered : !needs_coverage(&r->gb);
+    if (uncovered) given &= ~IMAGE_BIT(IMAGE_COVERAGE);
+    steps_make(&(step_facts){&r->plan, &r->set, given, r->proxies.count > 0, suns}, out);
+}
+
+static bool list_steps(const job *j, pass_context *c, frame_result *r, error *e)
+{
+    bool split = steps_split_suns(&r->plan);
+    if (split && !pass_split_suns(c, e)) return false;
+    filter_list(r, split && c->sunless->map.id != 0, &r->steps);
+    for (int i = 0; i < r->steps.count; i++) {
+        const plan_step *s = &r->steps.steps[i];
+        log_info(j->log, "pass %s: %s (%s)", s->pass, s->runs ? "runs" : "does not run", s->why);
+    }
+    return true;
 }
 
 static void take_counts(frame_result *r, const pass_context *c)
@@ -150,7 +166,7 @@ bool filter_begin(job *j, frame_result *r, error *e)
         .want_diffuse = p->layers & 1u << LAYER_DIFFUSE,
         .want_bent = p->want_bent,
         .want_error = p->want_error,
-        .want_indirect = bounces_itself(&r->set, p),
+        .want_indirect = steps_bounce_within(p, &r->set),
         .want_radiance = p->want_radiance,
         .want_visibility = p->want_visibility && method_makes(p->method, MAKES_LIGHT),
         .gb = &gb,
@@ -162,7 +178,7 @@ bool filter_begin(job *j, frame_result *r, error *e)
     };
     for (int k = 0; k < SH_IMAGES; k++) c.relight_sh[k] = r->relight_sh[k];
     if (!pass_begin(&c, e)) return false;
-    bool ok = run_passes(&c, &r->half, p, e) && gpu_finish(&j->g, "the passes", e);
+    bool ok = list_steps(j, &c, r, e) && run_steps(&c, &r->half, &r->steps, e) && gpu_finish(&j->g, "the passes", e);
     stopwatch_add(&t, &r->wall_ms[STAGE_PASSES], &r->cpu_ms[STAGE_PASSES]);
     ok = ok && !job_stopped(j) && read_back_begin(j, &c, r, e);
     stopwatch_add(&t, &r->wall_ms[STAGE_READ_BACK], &r->cpu_ms[STAGE_READ_BACK]);

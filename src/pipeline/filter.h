@@ -6,6 +6,8 @@
 
 // What the CPU does for the passes, from result->gb, set and plan. On any thread, but on no result twice at a time.
 bool filter_prepare(const job *j, frame_result *result, error *e);
+// The passes that the frame takes: with `suns`, those of an environment that has some.
+void filter_list(const frame_result *result, bool suns, step_list *out);
 // The passes, after filter_prepare if nobody called it. The layers are on their way: read_back_wait and read_back_convert follow.
 bool filter_begin(job *j, frame_result *result, error *e);
 // All of it.

@@ -251,9 +251,6 @@ static void describe(const job *j, const frame_result *r)
     log_info(j->log, "surfaces: %zu of %zu pixels", r->gb.valid, (size_t)r->gb.width * (size_t)r->gb.height);
     log_info(j->log, "radius: %g scene units%s; thickness %g", r->set.radius, j->o->radius_unit == RADIUS_AUTO ? " (auto)" : "",
              r->set.thickness);
-    for (int i = 0; i < r->plan.step_count; i++)
-        log_info(j->log, "pass %s: %s (%s)", r->plan.steps[i].pass, r->plan.steps[i].runs ? "runs" : "does not run",
-                 r->plan.steps[i].why);
 }
 
 // The environment is prepared with the first frame, because its default up axis is the renderer's.

@@ -13,6 +13,7 @@
 #include "pipeline/files.h"
 #include "pipeline/plan.h"
 #include "pipeline/record.h"
+#include "pipeline/steps.h"
 
 // What lives for all frames of a run: options, context, environment.
 typedef struct job {
@@ -43,6 +44,7 @@ typedef struct frame_result {
     gbuffer gb;
     plan plan;
     pass_settings set;
+    step_list steps;                                  // that filter_begin ran
     double wall_ms[STAGE_COUNT], cpu_ms[STAGE_COUNT]; // CPU of the whole process: with what runs beside the stage
     pass_timing timings[PASS_MAX_TIMINGS];
     int timing_count;

@@ -90,11 +90,6 @@ static bool drop_impossible(plan *p, const options *o, const exrio_file *file, c
     return true;
 }
 
-static void step(plan *p, const char *pass, bool runs, const char *why, const char *why_not)
-{
-    p->steps[p->step_count++] = (plan_step){pass, runs, runs ? why : why_not};
-}
-
 // The bounce goes into a beauty only where it does not already hold one.
 static bool bounce_belongs(const plan *p, const options *o, const inputs *in, log_t *log)
 {
@@ -105,25 +100,6 @@ static bool bounce_belongs(const plan *p, const options *o, const inputs *in, lo
     if (!o->bounce || !p->estimator) return false;
     log_warn(log, "double-bounce", "the beauty may already hold indirect light and occlusion; --bounce adds to it all the same");
     return true;
-}
-
-static void list_steps(plan *p, const options *o, const inputs *in)
-{
-    step(p, p->method->name, true, p->from_sh ? "its SH layers are read from the file" : "occlusion is always made", "");
-    step(p, "irradiance", p->irradiance, "the method gives no direction: SH irradiance x occlusion",
-         method_makes(p->method, MAKES_LIGHT) ? "the method makes radiance itself" : "no layer needs light");
-    step(p, "blur", p->blur, "noise of the sample pattern",
-         method_makes(p->method, MAKES_SH) ? "the method filters itself" : "--blur none");
-    step(p, "tone", p->tone, "scale, contrast and the bounds of a scalar method", "scale and contrast are 1");
-    step(p, "bounce", p->bounce, "indirect light", !in->albedo && p->relight ? "no albedo" : "no layer needs it");
-    step(p, "edges", p->edges, "partly covered pixels", "no layer but data of whole pixels");
-    step(p, "specular", p->specular, "roughness and environment",
-         !in->roughness ? "no roughness"
-         : !in->env     ? "no environment"
-                        : "no layer needs it");
-    step(p, "depthmask", p->depthmask, "unsharp mask of the depth", "no layer needs it");
-    step(p, "composite", p->composite, p->relight ? "lit by us" : "the beauty, occluded", "no layer needs it");
-    step(p, "environment", p->light, o->env ? "--env" : "white environment of radiance 1", "no layer needs light");
 }
 
 // What --error cannot be with.
@@ -184,6 +160,7 @@ bool plan_make(const options *o, const exrio_file *file, const resolution *r, pl
     if (p->specular) p->need |= NEED_MATERIAL;
     if (in.emission && relit) p->need |= NEED_EMISSION;
     if (in.diffuse_direct && p->composite && !p->relight) p->need |= NEED_DIFFUSE_LIGHT;
-    list_steps(p, o, &in);
+    p->why_no_bounce = !in.albedo && p->relight ? "no albedo" : "no layer needs it";
+    p->why_no_specular = !in.roughness ? "no roughness" : !in.env ? "no environment" : "no layer needs it";
     return true;
 }

@@ -1,4 +1,5 @@
-// Which passes a frame needs: a pass runs only if a layer that was asked for needs it and the input can feed it.
+// Which layers a frame has, and what they need: a pass runs only if a layer that was asked for needs it and the input can feed
+// it. The passes in their order are steps.h's.
 #ifndef SSDO_PIPELINE_PLAN_H
 #define SSDO_PIPELINE_PLAN_H
 
@@ -7,14 +8,6 @@
 #include "gbuffer/resolve.h"
 #include "passes/method.h"
 #include "pipeline/layers.h"
-
-enum { PLAN_STEPS = 12 };
-
-typedef struct plan_step {
-    const char *pass;
-    bool runs;
-    const char *why; // why it runs, or why not
-} plan_step;
 
 typedef struct plan {
     const method *method;
@@ -26,10 +19,9 @@ typedef struct plan {
     bool want_radiance, want_visibility, want_bent, want_error;
     bool irradiance, blur, tone, bounce, edges, specular, depthmask, composite;
     bool bounce_in_composite;
-    bool from_sh;                        // the method's SH vector is read from the file
-    const struct bounce_kind *estimator; // of the bounce that --bounce names, else the method's own; NULL: none
-    plan_step steps[PLAN_STEPS];
-    int step_count;
+    bool from_sh;                                // the method's SH vector is read from the file
+    const struct bounce_kind *estimator;         // of the bounce that --bounce names, else the method's own; NULL: none
+    const char *why_no_bounce, *why_no_specular; // where there is none
 } plan;
 
 // Decides. A default layer that cannot be made is left out with a warning; one named in --layers is ERR_INPUT naming the channel

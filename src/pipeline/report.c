@@ -39,23 +39,27 @@ static json_object *camera_of(const frame_result *r)
     return o;
 }
 
-static const pass_timing *timing_of(const frame_result *r, const char *name)
+static json_object *names_of(image_set images)
 {
-    for (int i = 0; i < r->timing_count; i++)
-        if (strcmp(r->timings[i].name, name) == 0) return &r->timings[i];
-    return NULL;
+    json_object *list = json_object_new_array();
+    for (int i = 0; i < IMAGE_COUNT; i++)
+        if (images & IMAGE_BIT(i)) json_object_array_add(list, json_text(image_table[i].name));
+    return list;
 }
 
+// In their order, and after them those that did not run.
 static json_object *passes_of(const frame_result *r)
 {
     json_object *list = json_object_new_array();
-    for (int i = 0; i < r->plan.step_count; i++) {
+    for (int i = 0; i < r->steps.count; i++) {
+        const plan_step *s = &r->steps.steps[i];
         json_object *o = json_object_new_object();
-        const plan_step *s = &r->plan.steps[i];
-        bool spared = s->runs && strcmp(s->pass, "edges") == 0 && !timing_of(r, "edges"); // decided with the pixels
         json_put_text(o, "pass", s->pass);
-        json_put(o, "runs", json_object_new_boolean(s->runs && !spared));
-        json_put_text(o, "why", spared ? "every pixel with a share of a surface has one recorded" : s->why);
+        json_put(o, "runs", json_object_new_boolean(s->runs));
+        json_put_text(o, "why", s->why);
+        if (s->size == STEP_SMALL) json_put_text(o, "size", "half");
+        if (s->runs) json_put(o, "reads", names_of(s->reads));
+        if (s->runs) json_put(o, "writes", names_of(s->writes));
         json_object_array_add(list, o);
     }
     return list;

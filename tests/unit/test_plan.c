@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "must.h"
-#include "pipeline/plan.h"
+#include "pipeline/steps.h"
 
 // What the file and the command line bring.
 enum { ALBEDO = 1, BEAUTY = 2, ROUGHNESS = 4, EMISSION = 8, DIRECT = 16, INDIRECT = 32, ENV = 64, SETS = 128 };
@@ -80,27 +80,89 @@ static bool can_be_made(layer_id l, const method *m, unsigned inputs)
     }
 }
 
-static bool runs(const plan *p, const char *pass)
+static pass_settings settings_for(const plan *p, const options *o)
 {
-    for (int i = 0; i < p->step_count; i++)
-        if (strcmp(p->steps[i].pass, pass) == 0) return p->steps[i].runs;
-    fail_msg("the plan has no step '%s'", pass);
-    return false;
+    return (pass_settings){.radius = 1.0,
+                           .samples = p->method->samples,
+                           .error = o->error,
+                           .blur = o->blur < 0 ? p->method->blur : o->blur,
+                           .sh_bands = o->sh_bands,
+                           .half = o->half == 1,
+                           .relight = p->relight};
 }
 
-// What is reported is what was decided, and every step says why.
-static void steps_are_the_decisions(const plan *p)
+// What the G-buffer brings: what the plan needs of what the file has.
+static image_set given_by(const plan *p)
 {
-    assert_string_equal(p->steps[0].pass, p->method->name);
-    assert_int_equal(runs(p, "irradiance"), p->irradiance);
-    assert_int_equal(runs(p, "blur"), p->blur);
-    assert_int_equal(runs(p, "tone"), p->tone);
-    assert_int_equal(runs(p, "bounce"), p->bounce);
-    assert_int_equal(runs(p, "specular"), p->specular);
-    assert_int_equal(runs(p, "depthmask"), p->depthmask);
-    assert_int_equal(runs(p, "composite"), p->composite);
-    assert_int_equal(runs(p, "environment"), p->light);
-    for (int i = 0; i < p->step_count; i++) assert_true(p->steps[i].why && p->steps[i].why[0]);
+    static const struct {
+        unsigned need;
+        image_id image;
+    } table[] = {{NEED_ALBEDO, IMAGE_ALBEDO},     {NEED_BEAUTY, IMAGE_BEAUTY},     {NEED_BACKGROUND, IMAGE_BEAUTY},
+                 {NEED_MATERIAL, IMAGE_MATERIAL}, {NEED_EMISSION, IMAGE_EMISSION}, {NEED_DIFFUSE_LIGHT, IMAGE_DIFFUSE_DIRECT},
+                 {NEED_COVERAGE, IMAGE_COVERAGE}};
+    image_set given = IMAGE_BIT(IMAGE_DEPTH) | IMAGE_BIT(IMAGE_NORMAL);
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+        if (p->need & table[i].need) given |= IMAGE_BIT(table[i].image);
+    return given;
+}
+
+static const plan_step *step_named(const step_list *l, const char *pass)
+{
+    for (int i = 0; i < l->count; i++)
+        if (strcmp(l->steps[i].pass, pass) == 0) return &l->steps[i];
+    fail_msg("no step '%s'", pass);
+    return NULL;
+}
+
+// Every picture that a step reads is there before it, at its size, and what is asked for is there in the end.
+static void pictures_flow(const plan *p, const step_list *l, const pass_settings *set, image_set given)
+{
+    image_set whole = given, small = set->half ? steps_given_small(p, set, given) : 0;
+    bool ended = false;
+    for (int i = 0; i < l->count; i++) {
+        const plan_step *s = &l->steps[i];
+        assert_true(s->why && s->why[0]);
+        if (!s->runs) ended = true;
+        if (!s->runs) continue;
+        assert_false(ended); // first what runs, then what does not
+        image_set *from = s->size == STEP_WHOLE ? &whole : &small, *to = s->size == STEP_SMALL ? &small : &whole;
+        if (s->reads & ~*from) fail_msg("%s by %s reads %x, and there is %x", s->pass, p->method->name, s->reads, *from);
+        if (s->size == STEP_UP) assert_int_equal(s->reads, s->writes);
+        assert_true(s->writes && (s->size == STEP_UP || s->run));
+        *to |= s->writes;
+    }
+    for (int i = 0; i < LAYER_COUNT; i++) {
+        const image_row *row = layer_table[i];
+        bool made = whole & IMAGE_BIT(row->image) || (row->otherwise && whole & IMAGE_BIT(row->otherwise));
+        if (p->layers & 1u << i && !made) fail_msg("nothing makes %s by %s", row->name, p->method->name);
+    }
+}
+
+// The plan's decisions are the steps' too, whatever else the frame has.
+static void steps_follow(const plan *p, const options *o)
+{
+    for (int half = 0; half < 2; half++)
+        for (int more = 0; more < 8; more++) {
+            pass_settings set = settings_for(p, o);
+            step_list l;
+            bool proxies = more & 1, suns = more & 2 && steps_split_suns(p);
+            set.half = half && o->error <= 0.0 && !p->from_sh;
+            if (more & 4) set.samples *= 16;
+            image_set given = given_by(p);
+            steps_make(&(step_facts){p, &set, given, proxies, suns}, &l);
+            pictures_flow(p, &l, &set, given);
+            assert_true(step_named(&l, p->method->name)->runs);
+            assert_int_equal(step_named(&l, "irradiance")->runs, p->irradiance);
+            assert_int_equal(step_named(&l, "tone")->runs, p->tone);
+            assert_int_equal(step_named(&l, "bounce")->runs, p->bounce && !steps_bounce_within(p, &set));
+            assert_int_equal(step_named(&l, "specular")->runs, p->specular);
+            assert_int_equal(step_named(&l, "depthmask")->runs, p->depthmask);
+            assert_int_equal(step_named(&l, "composite")->runs, p->composite);
+            assert_int_equal(step_named(&l, "edges")->runs, true);
+            assert_int_equal(step_named(&l, "upsample")->runs, set.half);
+            assert_int_equal(step_named(&l, "proxies")->runs, proxies);
+            assert_int_equal(step_named(&l, "suns")->runs, suns);
+        }
 }
 
 static void every_layer_alone(void **state)
@@ -136,7 +198,7 @@ static void every_layer_alone(void **state)
                 assert_false(p.want_radiance && p.irradiance);
                 if (l == LAYER_OCCLUSION || l == LAYER_BENT || l == LAYER_DEPTHMASK)
                     assert_false(p.light || p.want_radiance || p.irradiance || p.bounce);
-                steps_are_the_decisions(&p);
+                steps_follow(&p, &o);
             }
     assert_true(made > 1000 && refused > 1000);
 }
@@ -156,8 +218,40 @@ static void default_layers_are_those_that_can_be_made(void **state)
                 if (can_be_made((layer_id)l, m, inputs)) wanted |= 1u << l;
             must(planned(&o, inputs, &p, &e), &e);
             if (p.layers != wanted) fail_msg("%s with inputs %x: layers %x instead of %x", m->name, inputs, p.layers, wanted);
-            steps_are_the_decisions(&p);
+            steps_follow(&p, &o);
         }
+}
+
+// Any set of the layers that can be made, with every bounce, half resolution or an error that is asked for, spheres and suns.
+static void every_set_of_layers_flows(void **state)
+{
+    (void)state;
+    static const char *const estimators[] = {NULL, "arc", "ssdo", "vpl", "none"};
+    const method *m;
+    int lists = 0;
+    for (m = method_next(NULL, SEES_ANY); m; m = method_next(m, SEES_ANY))
+        for (unsigned inputs = 0; inputs < SETS; inputs++)
+            for (unsigned set = 1; set < 1u << LAYER_COUNT; set += 1 + 97u * (set > 64)) {
+                char layers[256] = "";
+                for (int l = 0; l < LAYER_COUNT; l++)
+                    if (set >> l & 1u && can_be_made((layer_id)l, m, inputs))
+                        snprintf(layers + strlen(layers), sizeof layers - strlen(layers), "%s%s", layers[0] ? "," : "",
+                                 layer_table[l]->name);
+                plan p;
+                error e;
+                options o = options_of(m, layers, inputs);
+                o.bounce = estimators[lists % 5];
+                o.error = lists % 3 == 0 && method_makes(m, MAKES_ERROR) ? 0.02 : 0.0;
+                o.half = lists % 2;
+                if (o.half == 1) o.error = 0.0;
+                if (!layers[0] || !planned(&o, inputs, &p, &e)) continue;
+                pass_settings s = settings_for(&p, &o);
+                step_list l;
+                steps_make(&(step_facts){&p, &s, given_by(&p), lists % 7 == 0, lists % 4 == 0 && steps_split_suns(&p)}, &l);
+                pictures_flow(&p, &l, &s, given_by(&p));
+                lists++;
+            }
+    assert_true(lists > 10000);
 }
 
 // A beauty that holds its indirect light gets no second bounce; one whose direct diffuse light stands alone does.
@@ -221,6 +315,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_layer_alone),
         cmocka_unit_test(default_layers_are_those_that_can_be_made),
+        cmocka_unit_test(every_set_of_layers_flows),
         cmocka_unit_test(the_bounce_goes_into_a_beauty_once),
         cmocka_unit_test(what_cannot_be_together_is_refused),
     };

@@ -1,0 +1,358 @@
+#include "pipeline/steps.h"
+
+#include <string.h>
+
+#include "passes/arc.h"
+
+#define BIT(id) IMAGE_BIT(IMAGE_##id)
+
+static const image_set LIGHT = BIT(RADIANCE) | BIT(VISIBILITY);
+
+typedef struct builder {
+    const step_facts *f;
+    step_list *list;
+    image_set whole, small; // that are there
+} builder;
+
+static image_set *there(builder *b, step_size size) { return size == STEP_SMALL ? &b->small : &b->whole; }
+
+static void add(builder *b, plan_step s)
+{
+    if (b->list->count == STEPS_MOST) return;
+    s.runs = true;
+    *there(b, s.size) |= s.writes;
+    b->list->steps[b->list->count++] = s;
+}
+
+// ---- how they run
+
+static bool run_pass(pass_context *c, const plan_step *s, error *e) { return s->call(c, e); }
+
+static gpu_image *if_written(pass_context *c, const plan_step *s, image_id id)
+{
+    return s->writes & IMAGE_BIT(id) ? &c->image[id] : NULL;
+}
+
+// Two scalars and one of the colours.
+static bool run_blur(pass_context *c, const plan_step *s, error *e)
+{
+    static const image_id colours[] = {IMAGE_RADIANCE, IMAGE_INDIRECT, IMAGE_BENT};
+    gpu_image *colour = NULL;
+    for (size_t i = 0; !colour && i < sizeof colours / sizeof *colours; i++) colour = if_written(c, s, colours[i]);
+    return pass_blur(c, c->set.blur, if_written(c, s, IMAGE_OCCLUSION), if_written(c, s, IMAGE_VISIBILITY), colour, e);
+}
+
+static bool run_tone(pass_context *c, const plan_step *s, error *e)
+{
+    for (int i = 0; i < IMAGE_COUNT; i++)
+        if (s->writes & IMAGE_BIT(i) && !pass_tone(c, &c->image[i], e)) return false;
+    return true;
+}
+
+// ---- the method, and what is made of its layers
+
+bool steps_split_suns(const plan *p)
+{
+    return method_makes(p->method, MAKES_LIGHT_WITHOUT_SUNS) && (p->want_radiance || p->want_visibility);
+}
+
+bool steps_bounce_within(const plan *p, const pass_settings *set)
+{
+    if (!p->bounce || p->estimator != p->method->bounce) return false;
+    if (p->estimator->march == BOUNCE_WITH_METHOD) return true;
+    return p->estimator->march == BOUNCE_WITH_PICTURE && !set->relight && (p->want_radiance || p->want_visibility);
+}
+
+static image_set vector_of(const pass_settings *set)
+{
+    image_set all = BIT(SH_0) | BIT(SH_1) | BIT(SH_2);
+    return set->sh_bands == 3 ? all | BIT(SH_3) | BIT(SH_4) : all;
+}
+
+static image_set made_by(const step_facts *f)
+{
+    const plan *p = f->plan;
+    image_set made = BIT(OCCLUSION);
+    if (p->want_bent) made |= BIT(BENT);
+    if (p->want_error) made |= BIT(ERROR);
+    if (p->want_radiance || steps_split_suns(p)) made |= BIT(RADIANCE); // that march makes it beside visibility
+    if (p->want_visibility && method_makes(p->method, MAKES_LIGHT)) made |= BIT(VISIBILITY);
+    if (method_makes(p->method, MAKES_SH)) made |= vector_of(f->set);
+    if (steps_bounce_within(p, f->set)) made |= BIT(INDIRECT);
+    if (method_makes(p->method, MAKES_ERROR) && (f->set->error > 0.0 || arc_has_half_difference(f->set)))
+        made |= BIT(HALF_DIFFERENCE);
+    return made;
+}
+
+// What surfaces send: the picture that the renderer lit, or our own radiance by their albedo.
+static image_set senders(const pass_settings *set) { return set->relight ? BIT(RADIANCE) | BIT(ALBEDO) : BIT(BEAUTY); }
+
+static void add_method(builder *b, step_size size)
+{
+    const step_facts *f = b->f;
+    const plan *p = f->plan;
+    image_set reads = BIT(DEPTH) | BIT(NORMAL);
+    if (steps_bounce_within(p, f->set) && p->estimator->march == BOUNCE_WITH_PICTURE) reads |= senders(f->set);
+    const char *why = p->from_sh            ? "its SH layers are read from the file"
+                      : f->set->error > 0.0 ? "occlusion is always made, in rounds until its error is small enough"
+                                            : "occlusion is always made";
+    add(b, (plan_step){.pass = p->method->name,
+                       .why = why,
+                       .size = size,
+                       .reads = reads,
+                       .writes = made_by(f),
+                       .run = run_pass,
+                       .call = p->method->run});
+}
+
+static void add_blur(builder *b, step_size size, image_set images)
+{
+    images &= *there(b, size);
+    if (images)
+        add(b, (plan_step){.pass = "blur",
+                           .why = "noise of the sample pattern",
+                           .size = size,
+                           .reads = images,
+                           .writes = images,
+                           .run = run_blur});
+}
+
+static void add_filters(builder *b, step_size size)
+{
+    bool difference = *there(b, size) & BIT(HALF_DIFFERENCE);
+    if (!b->f->plan->blur) return;
+    if (difference && b->f->set->error <= 0.0) // rounds have denoised it
+        add(b, (plan_step){.pass = "denoise",
+                           .why = "noise of the slices, known from their halves",
+                           .size = size,
+                           .reads = BIT(OCCLUSION) | BIT(HALF_DIFFERENCE),
+                           .writes = BIT(OCCLUSION),
+                           .run = run_pass,
+                           .call = pass_denoise});
+    add_blur(b, size, (difference ? 0 : BIT(OCCLUSION)) | LIGHT);
+    add_blur(b, size, BIT(BENT));
+}
+
+static image_set of_groups(image_set images, unsigned groups)
+{
+    for (int i = 0; i < IMAGE_COUNT; i++)
+        if (!(image_table[i].groups & groups)) images &= ~IMAGE_BIT(i);
+    return images;
+}
+
+static void add_light(builder *b, step_size size)
+{
+    const step_facts *f = b->f;
+    const plan *p = f->plan;
+    image_set *have = there(b, size), light = *have & LIGHT;
+    if (f->suns)
+        add(b, (plan_step){.pass = "suns",
+                           .why = "small bright sources of the environment",
+                           .size = size,
+                           .reads = light,
+                           .writes = light,
+                           .run = run_pass,
+                           .call = pass_suns});
+    image_set blocked = of_groups(*have, IMAGE_BLOCKED | IMAGE_VECTOR);
+    if (f->proxies)
+        add(b, (plan_step){.pass = "proxies",
+                           .why = "--proxies: spheres that the camera does not see",
+                           .size = size,
+                           .reads = blocked,
+                           .writes = blocked,
+                           .run = run_pass,
+                           .call = pass_proxies});
+    image_set scalars = *have & (BIT(OCCLUSION) | BIT(VISIBILITY));
+    if (p->tone)
+        add(b, (plan_step){.pass = "tone",
+                           .why = "scale, contrast and the bounds of a scalar method",
+                           .size = size,
+                           .reads = scalars,
+                           .writes = scalars,
+                           .run = run_tone});
+    if (p->irradiance)
+        add(b, (plan_step){.pass = "irradiance",
+                           .why = "the method gives no direction: SH irradiance x occlusion",
+                           .size = size,
+                           .reads = BIT(OCCLUSION),
+                           .writes = BIT(RADIANCE),
+                           .run = run_pass,
+                           .call = pass_irradiance});
+}
+
+static void add_bounce(builder *b, step_size size)
+{
+    const step_facts *f = b->f;
+    const plan *p = f->plan;
+    if (!p->bounce) return;
+    if (!steps_bounce_within(p, f->set))
+        add(b, (plan_step){.pass = "bounce",
+                           .why = "indirect light",
+                           .size = size,
+                           .reads = senders(f->set),
+                           .writes = BIT(INDIRECT),
+                           .run = run_pass,
+                           .call = p->estimator->run});
+    if (f->set->blur > 0 && !p->estimator->exact) add_blur(b, size, BIT(INDIRECT));
+}
+
+// ---- from half the size
+
+static void add_upsampling(builder *b, image_set which)
+{
+    image_set images = 0;
+    for (int i = 0; i < IMAGE_COUNT; i++)
+        if (image_table[i].resampled != AS_NOTHING) images |= IMAGE_BIT(i) & which & b->small & ~b->whole;
+    if (images)
+        add(b, (plan_step){.pass = "upsample", .why = "--resolution half", .size = STEP_UP, .reads = images, .writes = images});
+}
+
+static void add_at_half(builder *b)
+{
+    const step_facts *f = b->f;
+    const plan *p = f->plan;
+    b->small = steps_given_small(p, f->set, f->given);
+    add_method(b, STEP_SMALL);
+    add_filters(b, STEP_SMALL);
+    // All layers go up together, unless the bounce needs what is done to them at either size.
+    if (p->bounce && f->set->relight && (p->tone || p->irradiance || f->proxies || f->suns)) {
+        add_upsampling(b, ~0u);
+        add_light(b, STEP_SMALL);
+        add_bounce(b, STEP_SMALL);
+        add_upsampling(b, BIT(INDIRECT));
+    } else {
+        add_bounce(b, STEP_SMALL);
+        add_upsampling(b, ~0u);
+    }
+    add_light(b, STEP_WHOLE);
+}
+
+// ---- what follows at full size
+
+static bool to_fill(const step_facts *f) { return f->plan->edges && f->given & BIT(COVERAGE); }
+
+// Layers with a pass of their own, where nothing but the layer needs it.
+static bool asks_for_pass(const plan *p, int layer)
+{
+    return layer_table[layer]->pass && (p->layers & 1u << layer || (layer == LAYER_DEPTHMASK && p->depthmask));
+}
+
+static void add_composite(builder *b)
+{
+    const step_facts *f = b->f;
+    const plan *p = f->plan;
+    image_set writes = BIT(COMPOSITE), used = LIGHT | BIT(OCCLUSION) | BIT(INDIRECT) | BIT(SPECULAR) | BIT(DIFFUSE_SHARE) |
+                                              BIT(DEPTHMASK) | BIT(ALBEDO) | BIT(BEAUTY) | BIT(EMISSION) | BIT(DIFFUSE_DIRECT) |
+                                              BIT(COVERAGE);
+    if (p->layers & 1u << LAYER_DIFFUSE) writes |= BIT(DIFFUSE);
+    add(b, (plan_step){.pass = "composite",
+                       .why = p->relight ? "lit by us" : "the beauty, occluded",
+                       .reads = b->whole & used,
+                       .writes = writes,
+                       .run = run_pass,
+                       .call = pass_composite});
+}
+
+static void add_rest(builder *b)
+{
+    const step_facts *f = b->f;
+    const plan *p = f->plan;
+    // A beauty's light on unseen spheres is unknown: they send none.
+    if (p->bounce && f->set->relight && f->proxies)
+        add(b, (plan_step){.pass = "proxies bounce",
+                           .why = "light from the spheres",
+                           .reads = BIT(INDIRECT),
+                           .writes = BIT(INDIRECT),
+                           .run = run_pass,
+                           .call = pass_proxies_bounce});
+    image_set filled = of_groups(b->whole, IMAGE_FILLED | IMAGE_VECTOR);
+    if (to_fill(f))
+        add(b, (plan_step){.pass = "edges",
+                           .why = "partly covered pixels",
+                           .reads = filled | BIT(COVERAGE),
+                           .writes = filled,
+                           .run = run_pass,
+                           .call = pass_edges});
+    if (p->specular)
+        add(b, (plan_step){.pass = "specular",
+                           .why = "roughness and environment",
+                           .reads = BIT(MATERIAL),
+                           .writes = BIT(SPECULAR) | BIT(DIFFUSE_SHARE),
+                           .run = run_pass,
+                           .call = pass_specular});
+    for (int i = 0; i < LAYER_COUNT; i++)
+        if (asks_for_pass(p, i))
+            add(b, (plan_step){.pass = layer_table[i]->name,
+                               .why = p->layers & 1u << i ? "the layer is asked for" : "the composite",
+                               .reads = BIT(DEPTH),
+                               .writes = IMAGE_BIT(layer_table[i]->image),
+                               .run = run_pass,
+                               .call = layer_table[i]->pass});
+    if (p->composite) add_composite(b);
+}
+
+// ---- what does not run
+
+static void add_missing(step_list *l, const char *pass, const char *why)
+{
+    for (int i = 0; i < l->count; i++)
+        if (strcmp(l->steps[i].pass, pass) == 0) return;
+    if (l->count < STEPS_MOST) l->steps[l->count++] = (plan_step){.pass = pass, .why = why};
+}
+
+static void list_missing(const step_facts *f, step_list *l)
+{
+    const plan *p = f->plan;
+    bool light = method_makes(p->method, MAKES_LIGHT);
+    add_missing(l, "irradiance", light ? "the method makes radiance itself" : "no layer needs light");
+    add_missing(l, "blur",
+                method_makes(p->method, MAKES_SH) ? "the method filters itself"
+                : p->blur                         ? "the occlusion is denoised, and nothing else was sampled"
+                                                  : "--blur none");
+    add_missing(l, "denoise", p->blur && f->set->error > 0.0 ? "part of the rounds" : "too few slices, or none");
+    add_missing(l, "suns", "no light, or none of small bright sources");
+    add_missing(l, "proxies", "no spheres are given");
+    add_missing(l, "tone", "scale and contrast are 1");
+    add_missing(l, "bounce", p->bounce ? "the method's own march makes it" : p->why_no_bounce);
+    add_missing(l, "upsample", "all is made at full size");
+    add_missing(l, "edges", "every pixel with a share of a surface has one recorded");
+    add_missing(l, "specular", p->why_no_specular);
+    for (int i = 0; i < LAYER_COUNT; i++)
+        if (layer_table[i]->pass) add_missing(l, layer_table[i]->name, "no layer needs it");
+    add_missing(l, "composite", "no layer needs it");
+}
+
+// ---- the list
+
+image_set steps_given(const gbuffer *gb)
+{
+    image_set given = 0;
+    for (int i = 0; i < IMAGE_COUNT; i++)
+        if (image_table[i].given && pass_pixels(gb, (image_id)i)) given |= IMAGE_BIT(i);
+    return given;
+}
+
+// What the bounce gathers; nothing else at half size looks at colours.
+image_set steps_given_small(const plan *p, const pass_settings *set, image_set given)
+{
+    image_set looked_at = BIT(DEPTH) | BIT(NORMAL);
+    if (p->bounce) looked_at |= BIT(ALBEDO);
+    if (p->bounce && !set->relight) looked_at |= BIT(BEAUTY);
+    return given & looked_at;
+}
+
+void steps_make(const step_facts *f, step_list *out)
+{
+    out->count = 0;
+    builder b = {.f = f, .list = out, .whole = f->given};
+    if (f->set->half) {
+        add_at_half(&b);
+    } else {
+        add_method(&b, STEP_WHOLE);
+        add_filters(&b, STEP_WHOLE);
+        add_light(&b, STEP_WHOLE);
+        add_bounce(&b, STEP_WHOLE);
+    }
+    add_rest(&b);
+    list_missing(f, out);
+}
