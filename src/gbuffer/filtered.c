@@ -2,8 +2,8 @@
 // surface and the background's zeros, or, by negative lobes, lie beyond either. Such a pixel is given one surface again.
 //
 // Each mixed pixel is explained as a mean of two of the sides around it, each known from a clean pixel. If the filter is
-// symmetric, the centre belongs to the side that has the larger share; the nearer side's normal, which turns at round outlines, is
-// what remains of the stored one without the farther side's share.
+// symmetric, the centre belongs to the side that has the larger share; the nearer side's normal, which turns at round outlines,
+// is what remains of the stored one without the farther side's share.
 #include <stdlib.h>
 
 #include "base/mem.h"
