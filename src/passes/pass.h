@@ -198,7 +198,7 @@ bool pass_add_group(const pass_context *c, unsigned group, variant *words, pass_
 // ---- the passes that serve every method (passes/method.h), one file and one shader each
 
 bool pass_split_suns(pass_context *c, error *e); // takes the suns out of the environment, once a batch
-bool pass_suns(pass_context *c, error *e); // radiance, visibility: in place, if their suns are apart
+bool pass_suns(pass_context *c, error *e);       // radiance, visibility: in place, if their suns are apart
 // The occlusion by a filter that knows its noise from `half_difference`; other pictures by one that does not.
 typedef struct pass_denoising {
     const gpu_image *moments; // between the directions, rgba32f
