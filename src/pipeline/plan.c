@@ -60,7 +60,7 @@ static bool drop_products(plan *p, const options *o, const exrio_file *file, log
         if (method_makes(p->method, rows[i].product)) continue;
         method_names(makers, sizeof makers, rows[i].product, ", ", " or ");
         snprintf(because, sizeof because, "it takes --method %s", makers);
-        for (int l = rows[i].first; l <= (int)rows[i].last; l++)
+        for (int l = (int)rows[i].first; l <= (int)rows[i].last; l++)
             if (!cannot(p, o, file, (layer_id)l, NULL, because, log, e)) return false;
     }
     return true;
