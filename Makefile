@@ -8,6 +8,9 @@ MANDIR   := $(PREFIX)/share/man/man1
 BASHDIR  := $(PREFIX)/share/bash-completion/completions
 ZSHDIR   := $(PREFIX)/share/zsh/vendor-completions
 DOCDIR   := $(PREFIX)/share/doc/ssdo-filter
+INCDIR   := $(PREFIX)/include
+SODIR    := $(PREFIX)/lib
+PCDIR    := $(SODIR)/pkgconfig
 BUILD    ?= build
 JOBS     := $(if $(findstring j,$(MAKEFLAGS)),,-j$(shell nproc)) # of the inner make, when the user gave none
 Q        := $(if $(V),,@)# make V=1 shows the commands
@@ -18,7 +21,7 @@ endif
 # Debian packages (tests/deps.sh): what the build needs, what `make check` needs on top.
 DEPS_BUILD := gcc g++ pkg-config libopenexr-dev libopenimageio-dev libopencolorio-dev libembree-dev libegl-dev libegl-mesa0 libgl1-mesa-dri \
               libepoxy-dev libdeflate-dev libjson-c-dev libxxhash-dev
-DEPS_CHECK := patchelf libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender man-db parallel python3
+DEPS_CHECK := patchelf libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender man-db parallel python3 python3-numpy
 DEPS_BENCH := gnuplot-nox
 DEPS_HOSTS := blender openimageio-tools openexr imagemagick libmagickcore-6.q16-6-extra/libmagickcore-7.q16-10-extra
 DEPS_FARM  := blender slurm-wlm munge parallel python3-yaml openimageio-tools
@@ -41,7 +44,7 @@ WARN     := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -
 CFLAGS   ?= -O2 -g
 # No contraction of a*b+c and no fast-math: results must be the same bytes on every machine of the same architecture.
 ALL_CFLAGS = -std=c17 -D_GNU_SOURCE -DSSDO_LIBDIR='"$(LIBDIR)"' -Isrc -Itests/lib -I$(BUILD) $(PKG_CFLAGS) $(WARN) \
-             $(CFLAGS) -ffp-contract=off $(SANFLAGS) $(EXTRA_CFLAGS)
+             $(CFLAGS) -ffp-contract=off -fPIC -fvisibility=hidden $(SANFLAGS) $(EXTRA_CFLAGS)
 CXXFLAGS ?= -O2 -g
 ALL_CXXFLAGS = -std=c++17 -fPIC -fvisibility=hidden -Isrc $(CXXFLAGS) -Wall -Wextra -Wpedantic $(SANFLAGS)
 
@@ -54,6 +57,9 @@ DECIDES  := $(sort $(GLSL) $(wildcard src/exr/*.[ch] src/gbuffer/*.[ch] src/ligh
               src/base/half.c src/base/half.h src/base/vec.h src/gpu/program.c \
               $(foreach f,filter frame layers output plan read_back relight settings steps views,src/pipeline/$(f).c src/pipeline/$(f).h))
 BIN      := $(BUILD)/ssdo-filter
+# The library, src/ssdo.h: the rooms as one object that shows nothing but ssdo_*.
+SONAME   := libssdo.so.$(shell sed -n 's/^.define SSDO_INTERFACE //p' src/ssdo.h)
+LIBRARY_FILES := $(BUILD)/lib/$(SONAME) $(BUILD)/lib/libssdo.so $(BUILD)/lib/libssdo.a
 PLUGIN   := $(BUILD)/ssdo-images.so $(BUILD)/ssdo-colour.so $(BUILD)/ssdo-trace.so
 UNIT     := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))
 REPLAY   := $(patsubst tests/fuzz/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
@@ -62,7 +68,7 @@ HARD     := $(patsubst tests/hard/%.c,$(BUILD)/tests/%,$(wildcard tests/hard/har
 
 .SECONDARY: # keep test objects
 .PHONY: all deps deps-check deps-bench demo check lint format clean install uninstall help
-all: $(BIN) $(PLUGIN)
+all: $(BIN) $(PLUGIN) $(LIBRARY_FILES)
 
 help:
 	@echo 'make demo     install what is missing, build, filter a sample, make a contact sheet'
@@ -86,15 +92,30 @@ help:
 	@echo 'make check-openexr VERSIONS="folder ..."   tests against other versions of OpenEXR, and which reads which compression'
 	@echo 'make all | lint | format | install PREFIX= DESTDIR= | uninstall | clean'
 
-$(BIN): $(BUILD)/src/main.o $(BUILD)/libssdo.a
+$(BIN): $(BUILD)/src/main.o $(BUILD)/rooms.a
 	@echo "  link $@"
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
 
-$(BUILD)/libssdo.a: $(OBJ)
+$(BUILD)/rooms.a: $(OBJ)
 	@rm -f $@
 	@ar rcsD $@ $^
 
-$(BUILD)/%.o: %.c | deps-stamp
+$(BUILD)/lib/$(SONAME): $(OBJ)
+	@mkdir -p $(@D)
+	@echo "  link $@"
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -shared -Wl,-soname,$(SONAME) $(if $(SANITIZE),,-Wl$(comma)-z$(comma)defs) -o $@ $^ $(PKG_LIBS)
+$(BUILD)/lib/libssdo.so: $(BUILD)/lib/$(SONAME)
+	@ln -sf $(SONAME) $@
+$(BUILD)/lib/libssdo.a: $(OBJ)
+	@mkdir -p $(@D) && rm -f $@
+	@ld -r -o $(@D)/ssdo.o $^ && objcopy --localize-hidden $(@D)/ssdo.o && ar rcsD $@ $(@D)/ssdo.o && rm $(@D)/ssdo.o
+
+# Objects are made again when the compiler or its flags change.
+FLAGS     = $(CC) -fPIC $(CFLAGS) $(SANFLAGS) $(EXTRA_CFLAGS)
+$(BUILD)/flags: always
+	@mkdir -p $(@D) && { [ "$$(cat $@ 2>/dev/null)" = '$(subst ','\'',$(FLAGS))' ] || echo '$(subst ','\'',$(FLAGS))' >$@; }
+
+$(BUILD)/%.o: %.c $(BUILD)/flags | deps-stamp
 	@mkdir -p $(@D)
 	@echo "  cc   $<"
 	$(Q)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
@@ -111,7 +132,7 @@ $(BUILD)/version: always
 $(BUILD)/shaders.c: $(GLSL) shaders/embed.sh
 	@mkdir -p $(@D)
 	$(Q)sh shaders/embed.sh shaders $(GLSL) >$@.tmp && mv $@.tmp $@
-$(BUILD)/shaders.o: $(BUILD)/shaders.c src/gpu/shaders.h
+$(BUILD)/shaders.o: $(BUILD)/shaders.c src/gpu/shaders.h $(BUILD)/flags
 	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $<
 
 # The rows of all methods, of which the default one is named here.
@@ -125,7 +146,7 @@ $(BUILD)/methods.o: $(BUILD)/methods.c src/passes/method.h
 $(BUILD)/decides.c: $(DECIDES) src/pipeline/decides.sh
 	@mkdir -p $(@D)
 	$(Q)LC_ALL=C sh src/pipeline/decides.sh $(DECIDES) >$@.tmp && mv $@.tmp $@
-$(BUILD)/decides.o: $(BUILD)/decides.c src/pipeline/decides.h
+$(BUILD)/decides.o: $(BUILD)/decides.c src/pipeline/decides.h $(BUILD)/flags
 	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $<
 
 # OpenImageIO, OpenColorIO and Embree live in modules of their own, opened on demand: linking OpenImageIO costs every run 290 ms.
@@ -138,11 +159,11 @@ $(BUILD)/ssdo-%.so: src/plugin/%_shim.cpp src/plugin/%_abi.h | deps-stamp
 	@echo "  c++  $@"
 	$(Q)$(CXX) $(ALL_CXXFLAGS) -shared -o $@ $< $(LIBRARY) $(LDFLAGS)
 
-$(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(TESTLIB) $(BUILD)/libssdo.a
+$(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(TESTLIB) $(BUILD)/rooms.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(PKG_LIBS)
 
-$(BUILD)/tests/hard_%: $(BUILD)/tests/hard/hard_%.o $(BUILD)/tests/hard/hard.o $(TESTLIB) $(BUILD)/libssdo.a
+$(BUILD)/tests/hard_%: $(BUILD)/tests/hard/hard_%.o $(BUILD)/tests/hard/hard.o $(TESTLIB) $(BUILD)/rooms.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka $(PKG_LIBS)
 
@@ -228,12 +249,12 @@ fuzz: deps
 	@sh tests/deps.sh clang libclang-rt-dev/libclang-rt-14-dev openimageio-tools
 	@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/tests/make_corpus
 	@sh tests/fuzz/run.sh $(BUILD) $(FUZZ_SECONDS)
-$(BUILD)/tests/make_corpus: $(BUILD)/tests/fuzz/make_corpus.o $(TESTLIB) $(BUILD)/libssdo.a
+$(BUILD)/tests/make_corpus: $(BUILD)/tests/fuzz/make_corpus.o $(TESTLIB) $(BUILD)/rooms.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
 # What is tried on a machine with a GPU (tests/gpu): one archive that needs nothing there but a driver.
 GPU_TOOLS := $(BUILD)/tests/gpu/compare $(BUILD)/tests/bench/make_input
-$(BUILD)/tests/gpu/%: $(BUILD)/tests/gpu/%.o $(BUILD)/libssdo.a
+$(BUILD)/tests/gpu/%: $(BUILD)/tests/gpu/%.o $(BUILD)/rooms.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
 .PHONY: gpu-bundle
@@ -248,7 +269,7 @@ check-gpu-bundle: gpu-bundle
 	@sh tests/gpu/check.sh $(BUILD)/gpu-bundle.tar.xz bookworm trixie
 
 LISTS     := $(BUILD)/tests/list_variants
-$(LISTS): $(BUILD)/tests/limits/list_variants.o $(BUILD)/libssdo.a
+$(LISTS): $(BUILD)/tests/limits/list_variants.o $(BUILD)/rooms.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
 unit: $(UNIT) $(HARD) $(REPLAY) $(FAULT) $(LISTS) $(GPU_TOOLS)
@@ -274,17 +295,17 @@ UNSEEN    ?= 101# the variant of the scenes that bench-unseen renders
 UNSEEN_SPP ?= 48
 # Renders and references, kept outside the tree: they survive `make clean`, and every clone shares them.
 BENCH_CACHE ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/ssdo-bench
-$(BUILD)/bench-program: $(BENCH_OBJ) $(TESTLIB) $(BUILD)/libssdo.a
+$(BUILD)/bench-program: $(BENCH_OBJ) $(TESTLIB) $(BUILD)/rooms.a
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(EMBREE) $(PKG_LIBS)
 
 # What ssdo's light and bounce cost over its occlusion, beside the paper's figures; s3ho over hemisphere.
-$(BUILD)/bench-paper: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/paper.o $(TESTLIB) $(BUILD)/libssdo.a
+$(BUILD)/bench-paper: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/paper.o $(TESTLIB) $(BUILD)/rooms.a
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(EMBREE) $(PKG_LIBS)
 # The errors of arc's budgets, for bench-frame.
-$(BUILD)/bench-curve: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/curve.o $(TESTLIB) $(BUILD)/libssdo.a
+$(BUILD)/bench-curve: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/curve.o $(TESTLIB) $(BUILD)/rooms.a
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(EMBREE) $(PKG_LIBS)
 # Sequences and step spacings that `arc` could draw from.
-$(BUILD)/bench-sequences: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/sequences.o $(TESTLIB) $(BUILD)/libssdo.a
+$(BUILD)/bench-sequences: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/sequences.o $(TESTLIB) $(BUILD)/rooms.a
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(EMBREE) $(PKG_LIBS)
 # The rendered samples of the folder SAMPLES, with SEEDS seeds.
 SAMPLES  ?= samples
@@ -295,7 +316,7 @@ bench-sampling: deps-bench
 	@sh tests/bench/sequences.sh $(BUILD) $(SAMPLES) $(SEEDS) $(WORD)
 
 # --error: its estimate, and its time beside fixed budgets.
-$(BUILD)/bench-error: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/error.o $(TESTLIB) $(BUILD)/libssdo.a
+$(BUILD)/bench-error: $(filter-out %/bench.o,$(BENCH_OBJ)) $(BUILD)/tests/bench/error.o $(TESTLIB) $(BUILD)/rooms.a
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(EMBREE) $(PKG_LIBS)
 .PHONY: bench-error
 bench-error: deps-bench
@@ -352,7 +373,7 @@ bench-frame: deps-bench
 .PHONY: bench-frame-readme
 bench-frame-readme:
 	@sh tests/bench/paste.sh $(BUILD)/bench/frame.md bench-frame tests/bench/RESULTS.md
-$(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(TESTLIB) $(BUILD)/libssdo.a
+$(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(TESTLIB) $(BUILD)/rooms.a
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
 
 # Which errors of 5 % in the shaders the tests see.
@@ -389,19 +410,24 @@ $(BUILD)/ssdo-filter.1: man/ssdo-filter.1 $(BUILD)/completion.methods.1
 # Everything where Debian's policy puts it (below PREFIX). FARM: the templates to start from.
 FARM     := samples/farm/slurm.sh samples/farm/openjd.yaml
 install: all $(BUILD)/completion.bash $(BUILD)/completion.zsh $(BUILD)/ssdo-filter.1
-	install -d $(addprefix $(DESTDIR),$(BINDIR) $(LIBDIR) $(MANDIR) $(BASHDIR) $(ZSHDIR) $(DOCDIR)/examples)
+	install -d $(addprefix $(DESTDIR),$(BINDIR) $(LIBDIR) $(MANDIR) $(BASHDIR) $(ZSHDIR) $(DOCDIR)/examples $(INCDIR) $(PCDIR))
 	install -m 755 $(BIN) $(DESTDIR)$(BINDIR)/ssdo-filter
 	install -m 644 $(PLUGIN) $(DESTDIR)$(LIBDIR)
 	install -m 644 $(BUILD)/ssdo-filter.1 $(DESTDIR)$(MANDIR)/ssdo-filter.1
 	install -m 644 $(BUILD)/completion.bash $(DESTDIR)$(BASHDIR)/ssdo-filter
 	install -m 644 $(BUILD)/completion.zsh $(DESTDIR)$(ZSHDIR)/_ssdo-filter
+	install -m 644 $(BUILD)/lib/$(SONAME) $(BUILD)/lib/libssdo.a $(DESTDIR)$(SODIR)
+	ln -sf $(SONAME) $(DESTDIR)$(SODIR)/libssdo.so
+	install -m 644 src/ssdo.h $(DESTDIR)$(INCDIR)
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@PACKAGES@|$(PKGS)|' src/library/ssdo.pc.in >$(DESTDIR)$(PCDIR)/ssdo.pc
 	install -m 644 README.md $(DESTDIR)$(DOCDIR)
 	install -m 644 $(FARM) $(DESTDIR)$(DOCDIR)/examples
 
 # What install put there, and the folders that nobody else uses.
 uninstall:
 	rm -f $(addprefix $(DESTDIR),$(BINDIR)/ssdo-filter $(PLUGIN:$(BUILD)/%=$(LIBDIR)/%) $(MANDIR)/ssdo-filter.1 $(BASHDIR)/ssdo-filter \
-	    $(ZSHDIR)/_ssdo-filter $(DOCDIR)/README.md $(FARM:samples/farm/%=$(DOCDIR)/examples/%))
+	    $(ZSHDIR)/_ssdo-filter $(DOCDIR)/README.md $(FARM:samples/farm/%=$(DOCDIR)/examples/%) \
+	    $(SODIR)/$(SONAME) $(SODIR)/libssdo.so $(SODIR)/libssdo.a $(INCDIR)/ssdo.h $(PCDIR)/ssdo.pc)
 	-rmdir $(DESTDIR)$(LIBDIR) $(DESTDIR)$(DOCDIR)/examples $(DESTDIR)$(DOCDIR)
 
 # Program, modules and the libraries they need in one archive (tests/dist/make.sh).

@@ -58,9 +58,13 @@ void log_wipe(log_t *log)
     log->bar = false;
 }
 
-static void print_line(log_t *log, const char *kind, char *text)
+static void print_line(log_t *log, log_level level, const char *kind, char *text)
 {
     text_one_line(text);
+    if (log->take) {
+        log->take(log->context, level, text);
+        return;
+    }
     log_wipe(log);
     fprintf(stderr, "ssdo-filter: %s%s\n", kind, text);
 }
@@ -74,16 +78,16 @@ void log_warn(log_t *log, const char *key, const char *format, ...)
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
     pthread_mutex_lock(&log->lock);
-    if (remember(log, key, text) && log->level >= LOG_WARN) print_line(log, "warning: ", text);
+    if (remember(log, key, text) && log->level >= LOG_WARN) print_line(log, LOG_WARN, "warning: ", text);
     pthread_mutex_unlock(&log->lock);
 }
 
-static void say(log_t *log, const char *format, va_list args)
+static void say(log_t *log, log_level level, const char *format, va_list args)
 {
     char text[2048];
     vsnprintf(text, sizeof text, format, args);
     pthread_mutex_lock(&log->lock);
-    print_line(log, "", text);
+    print_line(log, level, "", text);
     pthread_mutex_unlock(&log->lock);
 }
 
@@ -91,7 +95,7 @@ void log_error(log_t *log, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    say(log, format, args);
+    say(log, LOG_WARN, format, args);
     va_end(args);
 }
 
@@ -100,6 +104,6 @@ void log_info(log_t *log, const char *format, ...)
     if (!log || log->level < LOG_INFO) return;
     va_list args;
     va_start(args, format);
-    say(log, format, args);
+    say(log, LOG_INFO, format, args);
     va_end(args);
 }

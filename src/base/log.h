@@ -16,6 +16,9 @@ typedef struct log {
     char **warnings; // texts of the warnings so far, owned
     char **keys;     // their keys, owned
     int warning_count;
+    // Takes every line instead of standard error, the program's name left out; NULL: standard error. Called with the lock held.
+    void (*take)(void *context, log_level level, const char *text);
+    void *context;
     bool bar; // a progress bar stands on standard error's current line; whoever prints takes it away first
 } log_t;
 

@@ -26,6 +26,7 @@ typedef struct options {
     const char *inputs[OPT_MAX_INPUTS];
     int input_count;
     bool literal; // not an option: the inputs are files of exactly these names (cli/names.h)
+    bool hosted;  // not an option: the process is another program's, whose environment variables stay as they are
     const char *output;
 
     const char *layers; // NULL = the default four

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include "base/mem.h"
@@ -215,6 +216,25 @@ static bool inspect(const exrio_inspector *inspector, const outfile *file, error
     return inspector->look(inspector->context, file->temp, e);
 }
 
+static exr_result_t write_parts(outfile *file, const char *name, const exrio_out_part *parts, int part_count, int threads,
+                                error *e)
+{
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    init.error_handler_fn = ignore_message;
+    init.user_data = file;
+    init.write_fn = write_bytes;
+    init.alloc_fn = core_allocate;
+    init.free_fn = core_free;
+    exr_context_t core = NULL;
+    if (threads < 1) threads = 1;
+    exr_result_t rv = exr_start_write(&core, name, EXR_WRITE_FILE_DIRECTLY, &init);
+    if (rv == EXR_ERR_SUCCESS) rv = exrio_put_header(core, parts, part_count);
+    for (int i = 0; rv == EXR_ERR_SUCCESS && i < part_count; i++) rv = write_part(core, i, &parts[i], threads, e);
+    exr_result_t finished = core ? exr_finish(&core) : EXR_ERR_SUCCESS;
+    if (rv == EXR_ERR_SUCCESS) rv = finished;
+    return rv;
+}
+
 bool exrio_write(const char *path, const exrio_out_part *parts, int part_count, int threads, error *e)
 {
     return exrio_write_inspected(path, parts, part_count, threads, NULL, e);
@@ -226,23 +246,27 @@ bool exrio_write_inspected(const char *path, const exrio_out_part *parts, int pa
     if (!exrio_check_parts(path, parts, part_count, e)) return false;
     outfile file = OUTFILE_NONE;
     if (!outfile_begin(path, &file, e)) return false;
-    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    init.error_handler_fn = ignore_message;
-    init.user_data = &file;
-    init.write_fn = write_bytes;
-    init.alloc_fn = core_allocate;
-    init.free_fn = core_free;
-    exr_context_t core = NULL;
-    if (threads < 1) threads = 1;
-    exr_result_t rv = exr_start_write(&core, file.temp, EXR_WRITE_FILE_DIRECTLY, &init);
-    if (rv == EXR_ERR_SUCCESS) rv = exrio_put_header(core, parts, part_count);
-    for (int i = 0; rv == EXR_ERR_SUCCESS && i < part_count; i++) rv = write_part(core, i, &parts[i], threads, e);
-    exr_result_t finished = core ? exr_finish(&core) : EXR_ERR_SUCCESS;
-    if (rv == EXR_ERR_SUCCESS) rv = finished;
+    exr_result_t rv = write_parts(&file, file.temp, parts, part_count, threads, e);
     if (rv == EXR_ERR_SUCCESS && inspect(inspector, &file, e)) return outfile_commit(&file, e);
     if (rv != EXR_ERR_SUCCESS) report(rv, &file, path, e);
     outfile_abort(&file);
     return false;
+}
+
+int exrio_write_memory(const exrio_out_part *parts, int part_count, int threads, error *e)
+{
+    static const char name[] = "a file in memory";
+    if (!exrio_check_parts(name, parts, part_count, e)) return -1;
+    outfile file = {.fd = memfd_create("ssdo", MFD_CLOEXEC)};
+    if (file.fd < 0) {
+        err_set(e, ERR_MEMORY, NULL, NULL, "a file in memory cannot be made: %s", strerror(errno));
+        return -1;
+    }
+    exr_result_t rv = write_parts(&file, name, parts, part_count, threads, e);
+    if (rv == EXR_ERR_SUCCESS) return file.fd;
+    report(rv, &file, name, e);
+    close(file.fd);
+    return -1;
 }
 
 bool exrio_part_is_verbatim(const exrio_part *part) { return !part->tiled; } // deep ones too, by their lines

@@ -75,6 +75,10 @@ bool exrio_write_inspected(const char *path, const exrio_out_part *parts, int pa
 // Writes scanline parts. Two channels of one name in a part, or two parts of one name, are ERR_OUTPUT.
 bool exrio_write(const char *path, const exrio_out_part *parts, int part_count, int threads, error *e);
 
+// Writes to a file that has no name and lies in memory; the descriptor is the caller's to close, -1 on failure. /proc/self/fd/N
+// opens it.
+int exrio_write_memory(const exrio_out_part *parts, int part_count, int threads, error *e);
+
 // True if a part's chunks can stand in a file of ours as they are: scanlines, nothing subsampled.
 bool exrio_part_is_verbatim(const exrio_part *part);
 

@@ -217,7 +217,7 @@ static bool open_requested(gpu *g, gpu_request request, EGLDeviceEXT *devices, i
 bool gpu_open_as(gpu *g, gpu_request request, log_t *log, error *e)
 {
     *g = (gpu){.log = log, .debug = request.debug};
-    gpu_set_up();
+    if (!request.hosted) gpu_set_up();
     if (!have_egl())
         return err_set(e, ERR_GL, NULL, NULL,
                        "libEGL.so.1 cannot be loaded; install a GL driver (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri)");

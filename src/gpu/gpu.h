@@ -68,6 +68,7 @@ typedef struct gpu_request {
     int device;    // -1: the first usable one
     bool hardware; // a software device is an error that says why there is no other
     bool debug;
+    bool hosted; // the process is another program's: its environment variables stay as they are
 } gpu_request;
 
 // Opens device number `device` (as listed), or with -1 the first usable one in the order of gpu/choose.h, falling back to the

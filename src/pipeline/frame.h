@@ -83,6 +83,8 @@ bool job_open(job *j, const options *o, log_t *log, error *e);
 // True if the run was asked to stop.
 bool job_stopped(const job *j);
 void job_close(job *j);
+// Environment and mesh, so that the next frame begins as the first one did. On the context's thread.
+void job_forget_light(job *j);
 
 // The three stages of a frame, to be called in this order on one result; after a failure only frame_free. When the job is stopped
 // before the passes have ended, filtering returns false without an error. Reading and writing may

@@ -15,7 +15,7 @@
 #define SSDO_LIBDIR "/usr/local/lib/ssdo-filter"
 #endif
 
-enum { PLACES = 4 };
+enum { PLACES = 5 };
 
 typedef struct places {
     char folder[PLACES][PATH_MAX];
@@ -43,6 +43,15 @@ static void list_places(places *p)
             *slash = '\0';
             add_place(p, exe, "");
             add_place(p, exe, "/../lib/ssdo-filter");
+        }
+    }
+    Dl_info self; // the library, in another program
+    static const char here;
+    if (dladdr(&here, &self) && self.dli_fname && snprintf(exe, sizeof exe, "%s", self.dli_fname) < (int)sizeof exe) {
+        char *slash = strrchr(exe, '/');
+        if (slash) {
+            *slash = '\0';
+            add_place(p, exe, "/ssdo-filter");
         }
     }
     add_place(p, SSDO_LIBDIR, "");
