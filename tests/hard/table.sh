@@ -36,7 +36,7 @@ program() {
 }
 frames() { [ "$1" = sequence ] && echo "0001 0002" || echo 0001; }
 
-# try KIND FORM N, in the folder $mine, which holds a cache of its own: "KIND FORM N CODE" to its results, or a sentence to `failed`.
+# try KIND FORM N, in the folder $mine, which holds caches of its own: "KIND FORM N CODE" to its results, or a sentence to `failed`.
 failed() {
     { echo "$*"; cat "$mine/err"; } >"$mine/failed"
     exit 1
@@ -67,8 +67,10 @@ whole() {
 }
 begin() {
     rm -rf "$mine/out" && mkdir "$mine/out"
-    [ "$1" = cold ] && rm -rf "$mine/cache"
-    [ -e "$mine/cache" ] || mkdir "$mine/cache"
+    XDG_CACHE_HOME=$mine/cache
+    [ "$1" = cold ] && XDG_CACHE_HOME=$mine/cold && rm -rf "$mine/cold"
+    mkdir -p "$XDG_CACHE_HOME"
+    export XDG_CACHE_HOME
 }
 try() {
     what="$1 $3 of a $2 run"
@@ -97,8 +99,7 @@ try() {
 worker() {
     mine=$dir/worker.$1
     mkdir "$mine"
-    XDG_CACHE_HOME=$mine/cache
-    export XDG_CACHE_HOME
+    cp -r "$dir/clean/cold" "$mine/cache"
     : >"$mine/results"
     line=0
     while read -r kind form n; do
@@ -110,14 +111,13 @@ worker() {
 # --- the clean runs, which also count ---
 mine=$dir/clean
 mkdir "$mine"
-XDG_CACHE_HOME=$mine/cache
-export XDG_CACHE_HOME
 for form in cold single sequence; do
     begin $form
     with="LD_PRELOAD=$fault SSDO_FAULT=all SSDO_FAULT_COUNT=$dir/count.$form"
     program $form "$mine/out" 2>"$mine/err" || { cat "$mine/err"; die "the clean run: $form"; }
     with=
     mv "$mine/out" "$dir/good.$form"
+    [ $form = cold ] && cp -r "$mine/cold" "$mine/cache" # which the others find filled
 done
 occurrences() { sed -n "s/^$1 //p" "$dir/count.$2"; }
 
@@ -170,6 +170,6 @@ if [ -n "${SSDO_TABLES-}" ]; then
             echo "$row |"
         done
         echo
-    } >"$SSDO_TABLES/table.md"
+    } >"$SSDO_TABLES/90-calls.md"
 fi
 echo "figure: $(wc -l <"$dir/results") system calls failed once each, $(grep -vc ' 0$' "$dir/results") of them ended the frame: 0 partial targets, 0 lost inputs, 0 other results, every next run completed"
