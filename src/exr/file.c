@@ -140,6 +140,27 @@ static bool check_window(const exrio_file *file, const exrio_part *p, error *e)
                    (long long)w, (long long)h, EXRIO_MAX_SIDE, EXRIO_MAX_PIXELS);
 }
 
+// Of the compressions that the library has known for long; of a newer one, the most that any has.
+static int32_t lines_per_chunk(int compression)
+{
+    switch (compression) {
+    case EXR_COMPRESSION_NONE:
+    case EXR_COMPRESSION_RLE:
+    case EXR_COMPRESSION_ZIPS:
+        return 1;
+    case EXR_COMPRESSION_ZIP:
+    case EXR_COMPRESSION_PXR24:
+        return 16;
+    case EXR_COMPRESSION_PIZ:
+    case EXR_COMPRESSION_B44:
+    case EXR_COMPRESSION_B44A:
+    case EXR_COMPRESSION_DWAA:
+        return 32;
+    default:
+        return 256;
+    }
+}
+
 // The library computes with a chunk's size as an int.
 static bool check_chunk_size(const exrio_file *file, int index, const exrio_part *p, error *e)
 {
@@ -156,7 +177,7 @@ static bool check_chunk_size(const exrio_file *file, int index, const exrio_part
         lines = ty > INT32_MAX ? INT32_MAX : (int32_t)ty;
         if (tx < columns) columns = tx;
     } else if (exr_get_scanlines_per_chunk(file->core, index, &lines) != EXR_ERR_SUCCESS || lines < 1) {
-        return err_set(e, ERR_INPUT, file->path, NULL, "is damaged: its blocks have no lines; render it again");
+        lines = lines_per_chunk(p->compression); // the library has no answer for lines with a leftover of tiles in the header
     }
     if ((uint64_t)lines < h) h = (uint64_t)lines;
     if (pixel * h * columns <= EXRIO_MAX_CHUNK_BYTES) return true;
