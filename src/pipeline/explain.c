@@ -118,9 +118,9 @@ static bool explain_files(const options *o, const input_paths *in, FILE *to, err
         explain_json(&r, ok, &log, e, to);
         goto out;
     }
-    for (int i = 0; i < in->count; i++) fprintf(to, "%s\n", in->list[i]);
+    for (int i = 0; i < in->count; i++) text_print(to, "%s\n", in->list[i]);
     for (frame_result *v = &r; v && v->file && v->resolution.convention; v = v->next_view) {
-        if (v->view) fprintf(to, "\nview %s\n", v->view);
+        if (v->view) text_print(to, "\nview %s\n", v->view);
         explain_renderer(v, to);
         explain_roles(v, to);
         if (!ok) continue;
