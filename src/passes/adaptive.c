@@ -56,8 +56,10 @@ static bool march(work *w, const char *what, int round, error *e)
         .untimed = true,
         .tiles = go_to(w, w->active),
         PASS_PARAMS(params),
-        .reads = {{"surface_image", &c->surface}, {"planes_image", &c->plane_image}},
-        .writes = {{"scalar_image", &c->occlusion}, {"half_difference_image", &c->half_difference}, {"sums_image", &w->sums}},
+        .reads = {{"surface_image", &c->image[IMAGE_SURFACE]}, {"planes_image", &c->image[IMAGE_PLANES]}},
+        .writes = {{"scalar_image", &c->image[IMAGE_OCCLUSION]},
+                   {"half_difference_image", &c->image[IMAGE_HALF_DIFFERENCE]},
+                   {"sums_image", &w->sums}},
     };
     return pass_run(c, &call, e);
 }
@@ -131,7 +133,7 @@ static bool make_room(work *w, error *e)
     if (!r->last || !w->active || !w->grown || !w->read) return false;
     memcpy(w->active, r->tiles.occupied, count);
     w->tiles = r->tiles;
-    return pass_make(c, &c->occlusion, GL_R32F, 1.0f, e) && pass_make(c, &c->half_difference, GL_R32F, 0.0f, e) &&
+    return pass_make_image(c, IMAGE_OCCLUSION, e) && pass_make_image(c, IMAGE_HALF_DIFFERENCE, e) &&
            pass_make(c, &w->sums, GL_RG32F, 0.0f, e) && pass_make(c, &w->moments, GL_RGBA32F, 0.0f, e) &&
            pass_make(c, &w->result, GL_R32F, 1.0f, e) && pass_make(c, &w->square, GL_R32F, 0.0f, e) &&
            gpu_buffer_make(c->g, &w->totals, NULL, count * sizeof *w->read, "the tiles' errors", e);
@@ -142,18 +144,18 @@ static bool make_room(work *w, error *e)
 static bool conclude(work *w, error *e)
 {
     pass_context *c = w->c;
-    gpu_image t = c->occlusion; // every tile's result is of its last round
-    c->occlusion = w->result, w->result = t;
+    gpu_image t = c->image[IMAGE_OCCLUSION]; // every tile's result is of its last round
+    c->image[IMAGE_OCCLUSION] = w->result, w->result = t;
     c->denoised = true;
     if (!c->want_error) return true;
     const pass_call call = {
         .program = "root",
         .untimed = true,
         .reads = {{"square_image", &w->square}},
-        .writes = {{"root_out", &c->error}},
+        .writes = {{"root_out", &c->image[IMAGE_ERROR]}},
     };
     int radius = c->set.blur > ERROR_RADIUS ? c->set.blur : ERROR_RADIUS;
-    return pass_blur(c, radius, &w->square, NULL, NULL, e) && pass_make(c, &c->error, GL_R32F, 0.0f, e) && pass_run(c, &call, e);
+    return pass_blur(c, radius, &w->square, NULL, NULL, e) && pass_make_image(c, IMAGE_ERROR, e) && pass_run(c, &call, e);
 }
 
 static void count_samples(adaptive_sampling *r)

@@ -91,7 +91,7 @@ static void put_plane(float row[PLANE_COLUMNS][4], const plane *p, bool uneven)
 // Finds the planes, once a frame, and puts them where the shader reads them.
 static bool make_planes(pass_context *c, error *e)
 {
-    if (!c->set.planes || c->plane_image.id) return true;
+    if (!c->set.planes || c->image[IMAGE_PLANES].id) return true;
     if (!c->planes.found && !planes_find(c->gb, &c->planes, e)) return false;
     float rows[PLANES_MAX + 1][PLANE_COLUMNS][4] = {0};
     for (int i = 0; i < c->planes.count + c->planes.uneven; i++) put_plane(rows[i], &c->planes.planes[i], i == c->planes.count);
@@ -99,8 +99,8 @@ static bool make_planes(pass_context *c, error *e)
         log_info(c->log, "%s %d: %.1f %% of the surfaces, %.3g x %.3g scene units",
                  i == c->planes.count ? "uneven ground, as plane" : "plane", i + 1, 100.0 * c->planes.planes[i].share,
                  2.0 * c->planes.planes[i].half[0], 2.0 * c->planes.planes[i].half[1]);
-    if (!gpu_image_make(c->g, &c->plane_image, GL_RGBA32F, PLANE_COLUMNS, PLANES_MAX + 1, 1, e)) return false;
-    gpu_image_upload(c->g, &c->plane_image, 0, rows[0][0]);
+    if (!gpu_image_make(c->g, &c->image[IMAGE_PLANES], GL_RGBA32F, PLANE_COLUMNS, PLANES_MAX + 1, 1, e)) return false;
+    gpu_image_upload(c->g, &c->image[IMAGE_PLANES], 0, rows[0][0]);
     return true;
 }
 
@@ -116,17 +116,17 @@ variant arc_variant(const pass_context *c, const char *what)
 
 static bool make_surface(pass_context *c, error *e)
 {
-    if (c->surface.id) return true;
+    if (c->image[IMAGE_SURFACE].id) return true;
     const arc_params params = arc_params_of(c);
     const variant v = arc_variant(c, "");
     const pass_call call = {
         .program = "surface",
         .variant = v.words,
         PASS_PARAMS(params),
-        .reads = {{"planes_image", &c->plane_image}},
-        .writes = {{"surface_image", &c->surface}},
+        .reads = {{"planes_image", &c->image[IMAGE_PLANES]}},
+        .writes = {{"surface_image", &c->image[IMAGE_SURFACE]}},
     };
-    return pass_make(c, &c->surface, GL_RG32UI, 0.0f, e) && pass_run(c, &call, e);
+    return pass_make_image(c, IMAGE_SURFACE, e) && pass_run(c, &call, e);
 }
 
 bool arc_make_inputs(pass_context *c, error *e) { return make_planes(c, e) && make_surface(c, e); }
@@ -142,11 +142,11 @@ static bool run_bent(pass_context *c, const char *what, error *e)
         .program = "arc",
         .label = "arc bent",
         .variant = v.words,
-        .reads = {{"surface_image", &c->surface}, {"planes_image", &c->plane_image}},
-        .writes = {{"scalar_image", &unused}, {"light_image", &c->bent}},
+        .reads = {{"surface_image", &c->image[IMAGE_SURFACE]}, {"planes_image", &c->image[IMAGE_PLANES]}},
+        .writes = {{"scalar_image", &unused}, {"light_image", &c->image[IMAGE_BENT]}},
     };
-    bool ok = pass_make(c, &unused, GL_R32F, 1.0f, e) && pass_make(c, &c->bent, GL_RGBA32F, 0.0f, e) &&
-              arc_run_as_adaptive(c, &call, &params, e);
+    bool ok =
+        pass_make(c, &unused, GL_R32F, 1.0f, e) && pass_make_image(c, IMAGE_BENT, e) && arc_run_as_adaptive(c, &call, &params, e);
     gpu_image_free(&unused);
     return ok;
 }
@@ -159,15 +159,17 @@ bool arc_run_occlusion(pass_context *c, const char *what, error *e)
     variant v = arc_variant(c, what);
     variant_add(&v, c->want_bent, "BENT");
     variant_add(&v, half_difference, "HALF_DIFFERENCE");
-    if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e)) return false;
-    if (c->want_bent && !pass_make(c, &c->bent, GL_RGBA32F, 0.0f, e)) return false;
-    if (half_difference && !pass_make(c, &c->half_difference, GL_R32F, 0.0f, e)) return false;
+    if (!pass_make_image(c, IMAGE_OCCLUSION, e)) return false;
+    if (c->want_bent && !pass_make_image(c, IMAGE_BENT, e)) return false;
+    if (half_difference && !pass_make_image(c, IMAGE_HALF_DIFFERENCE, e)) return false;
     const pass_call call = {
         .program = "arc",
         .variant = v.words,
         PASS_PARAMS(params),
-        .reads = {{"surface_image", &c->surface}, {"planes_image", &c->plane_image}},
-        .writes = {{"scalar_image", &c->occlusion}, {"light_image", &c->bent}, {"half_difference_image", &c->half_difference}},
+        .reads = {{"surface_image", &c->image[IMAGE_SURFACE]}, {"planes_image", &c->image[IMAGE_PLANES]}},
+        .writes = {{"scalar_image", &c->image[IMAGE_OCCLUSION]},
+                   {"light_image", &c->image[IMAGE_BENT]},
+                   {"half_difference_image", &c->image[IMAGE_HALF_DIFFERENCE]}},
     };
     return pass_run(c, &call, e);
 }
@@ -181,7 +183,7 @@ static bool light_planes(pass_context *c, const arc_params *params, const gpu_im
         .groups = {1, 1},
         PASS_PARAMS(*params),
         .reads = {{"sender_image", sender}, {"albedo_image", albedo}},
-        .writes = {{"planes_image", &c->plane_image}},
+        .writes = {{"planes_image", &c->image[IMAGE_PLANES]}},
     };
     return c->planes.count + c->planes.uneven == 0 || pass_run(c, &call, e);
 }
@@ -192,13 +194,13 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
 {
     // A picture the renderer lit is what surfaces send; our own radiance still needs their albedo.
     bool exitant = !c->set.relight, visibility = sky && c->want_visibility;
-    const gpu_image *sender = exitant ? &c->beauty : &c->radiance, *albedo = exitant ? &c->beauty : &c->albedo;
+    const gpu_image *sender = exitant ? &c->image[IMAGE_BEAUTY] : &c->image[IMAGE_RADIANCE],
+                    *albedo = exitant ? &c->image[IMAGE_BEAUTY] : &c->image[IMAGE_ALBEDO];
     arc_params params = arc_unlimited_params_of(c);
     params.exitant = exitant;
-    if (sky && (!pass_split_suns(c, e) || !pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e))) return false;
-    if (visibility && !pass_make(c, &c->visibility, GL_R32F, 1.0f, e)) return false;
-    if (bounce && (!light_planes(c, &params, sender, albedo, e) || !pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e)))
-        return false;
+    if (sky && (!pass_split_suns(c, e) || !pass_make_image(c, IMAGE_RADIANCE, e))) return false;
+    if (visibility && !pass_make_image(c, IMAGE_VISIBILITY, e)) return false;
+    if (bounce && (!light_planes(c, &params, sender, albedo, e) || !pass_make_image(c, IMAGE_INDIRECT, e))) return false;
     if (sky) c->suns_apart = c->sunless->map.id != 0;
     variant v = arc_variant(c, "RUNS");
     variant_add(&v, sky, "LIGHT");
@@ -212,11 +214,13 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
                                : "arc bounce",
         .variant = v.words,
         .environment = sky && c->suns_apart ? &c->sunless->map : NULL,
-        .reads = {{"surface_image", &c->surface},
-                  {"planes_image", &c->plane_image},
+        .reads = {{"surface_image", &c->image[IMAGE_SURFACE]},
+                  {"planes_image", &c->image[IMAGE_PLANES]},
                   {"sender_image", sender},
                   {"albedo_image", albedo}},
-        .writes = {{"scalar_image", &c->visibility}, {"light_image", &c->radiance}, {"indirect_image", &c->indirect}},
+        .writes = {{"scalar_image", &c->image[IMAGE_VISIBILITY]},
+                   {"light_image", &c->image[IMAGE_RADIANCE]},
+                   {"indirect_image", &c->image[IMAGE_INDIRECT]}},
     };
     return arc_run_as_adaptive(c, &call, &params, e);
 }
@@ -229,7 +233,7 @@ static bool run(pass_context *c, error *e)
 
 static bool run_bounce(pass_context *c, error *e)
 {
-    return c->indirect.id || (arc_make_inputs(c, e) && run_light(c, false, true, e));
+    return c->image[IMAGE_INDIRECT].id || (arc_make_inputs(c, e) && run_light(c, false, true, e));
 }
 
 static const variant_row variants[] = {

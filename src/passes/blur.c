@@ -56,8 +56,8 @@ static bool denoise(pass_context *c, const pass_denoising *d, const char *words,
         .variant = words,
         .tiles = d->tiles,
         PASS_PARAMS(params),
-        .reads = {{"estimate_image", &c->occlusion},
-                  {"half_difference_image", &c->half_difference},
+        .reads = {{"estimate_image", &c->image[IMAGE_OCCLUSION]},
+                  {"half_difference_image", &c->image[IMAGE_HALF_DIFFERENCE]},
                   {"moments_image", across ? NULL : d->moments}},
         .writes = {{"moments_out", across ? d->moments : NULL}, {"result_out", d->result}, {"error_out", d->square}},
     };
@@ -74,7 +74,7 @@ bool pass_denoise(pass_context *c, error *e)
     const pass_denoising d = {.moments = &moments, .result = &result};
     bool ok = pass_make(c, &moments, GL_RGBA32F, 0.0f, e) && pass_make(c, &result, GL_R32F, 1.0f, e) &&
               pass_denoise_across(c, &d, e) && pass_denoise_down(c, &d, e);
-    if (ok) swap(&c->occlusion, &result);
+    if (ok) swap(&c->image[IMAGE_OCCLUSION], &result);
     c->denoised = ok;
     gpu_image_free(&moments);
     gpu_image_free(&result);

@@ -49,10 +49,10 @@ bool pass_depthmask(pass_context *c, error *e)
         .variant = "DOWN",
         PASS_PARAMS(params),
         .reads = {{"sums_image", &sums}},
-        .writes = {{"mask_image", &c->depthmask}},
+        .writes = {{"mask_image", &c->image[IMAGE_DEPTHMASK]}},
     };
-    bool ok = pass_make(c, &sums, GL_RG32F, 0.0f, e) && pass_make(c, &c->depthmask, GL_R32F, 0.0f, e) &&
-              pass_run(c, &across, e) && pass_run(c, &down, e);
+    bool ok = pass_make(c, &sums, GL_RG32F, 0.0f, e) && pass_make_image(c, IMAGE_DEPTHMASK, e) && pass_run(c, &across, e) &&
+              pass_run(c, &down, e);
     gpu_image_free(&sums);
     return ok;
 }

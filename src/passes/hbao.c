@@ -15,8 +15,8 @@ static bool run(pass_context *c, error *e)
 {
     hbao_params params = {.radius = (float)c->set.radius, .bias = (float)(c->set.angle_bias * M_PI / 180.0), .seed = c->set.seed};
     grid(c->set.samples, &params.directions, &params.steps);
-    const pass_call call = {.program = "hbao", PASS_PARAMS(params), .writes = {{"occlusion_image", &c->occlusion}}};
-    return pass_make(c, &c->occlusion, GL_R32F, 1.0f, e) && pass_run(c, &call, e);
+    const pass_call call = {.program = "hbao", PASS_PARAMS(params), .writes = {{"occlusion_image", &c->image[IMAGE_OCCLUSION]}}};
+    return pass_make_image(c, IMAGE_OCCLUSION, e) && pass_run(c, &call, e);
 }
 
 static const variant_row variants[] = {

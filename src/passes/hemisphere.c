@@ -4,8 +4,9 @@
 static bool run(pass_context *c, error *e)
 {
     const points_params params = {.radius = (float)c->set.radius, .samples = c->set.samples, .seed = c->set.seed};
-    const pass_call call = {.program = "hemisphere", PASS_PARAMS(params), .writes = {{"occlusion_image", &c->occlusion}}};
-    return pass_make(c, &c->occlusion, GL_R32F, 1.0f, e) && pass_run(c, &call, e);
+    const pass_call call = {
+        .program = "hemisphere", PASS_PARAMS(params), .writes = {{"occlusion_image", &c->image[IMAGE_OCCLUSION]}}};
+    return pass_make_image(c, IMAGE_OCCLUSION, e) && pass_run(c, &call, e);
 }
 
 static const variant_row variants[] = {

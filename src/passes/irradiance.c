@@ -2,7 +2,8 @@
 
 bool pass_irradiance(pass_context *c, error *e)
 {
-    const pass_call call = {
-        .program = "irradiance", .reads = {{"occlusion_image", &c->occlusion}}, .writes = {{"radiance_image", &c->radiance}}};
-    return pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e) && pass_run(c, &call, e);
+    const pass_call call = {.program = "irradiance",
+                            .reads = {{"occlusion_image", &c->image[IMAGE_OCCLUSION]}},
+                            .writes = {{"radiance_image", &c->image[IMAGE_RADIANCE]}}};
+    return pass_make_image(c, IMAGE_RADIANCE, e) && pass_run(c, &call, e);
 }

@@ -179,8 +179,8 @@ static const gpu_image *picture_named(const pass_context *c, const pass_call *ca
         if (strcmp(p->name, name) == 0) return p->image;
     for (const pass_picture *p = call->writes; p->name; p++)
         if (strcmp(p->name, name) == 0) return p->image;
-    if (strcmp(name, "depth_image") == 0) return &c->depth;
-    if (strcmp(name, "normal_image") == 0) return &c->normal;
+    if (strcmp(name, "depth_image") == 0) return &c->image[IMAGE_DEPTH];
+    if (strcmp(name, "normal_image") == 0) return &c->image[IMAGE_NORMAL];
     return NULL;
 }
 

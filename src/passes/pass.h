@@ -1,7 +1,7 @@
 // What the passes share: the frame on the GPU, the settings, the layers as they come to be.
 //
-// A pass is one function that reads some images of the context and fills others. Images it needs are made by pass_make (once a
-// frame, by name of the field). Passes run in the order of pipeline/plan.c; nothing here decides what runs.
+// A pass is one function that reads some images of the context and fills others. Images it needs are made by pass_make_image
+// (once a frame, by its image_id). Passes run in the order of pipeline/plan.c; nothing here decides what runs.
 #ifndef SSDO_PASSES_PASS_H
 #define SSDO_PASSES_PASS_H
 
@@ -106,15 +106,7 @@ typedef struct pass_context {
     struct trace_scene *trace;           // the same; for raytrace
 
     int width, height;
-    // id 0: the frame has none, or its pass has not run.
-    union {
-        gpu_image image[IMAGE_COUNT];
-        struct { // the same by name, in the order of the rows
-            gpu_image depth, normal, albedo, beauty, material, emission, diffuse_direct, coverage;
-            gpu_image occlusion, radiance, indirect, composite, visibility, specular, diffuse, depthmask, bent;
-            gpu_image sh[SH_IMAGES], error, diffuse_share, half_difference, plane_image, surface;
-        };
-    };
+    gpu_image image[IMAGE_COUNT]; // id 0: the frame has none, or its pass has not run
 
     bool suns_apart;  // radiance and visibility lack the suns of `sunless`, which bear no filter, until pass_suns adds them
     bool denoised;    // the occlusion is, and bears no blur

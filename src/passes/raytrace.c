@@ -72,10 +72,10 @@ static bool run_step(trace_run *r, const char *program, const char *words, size_
         .range = {(int)first, (int)end},
         PASS_PARAMS(r->params),
         .reads = {{"point_image", &r->point}, {"face_image", &r->face}},
-        .writes = {{"occlusion_image", &c->occlusion},
-                   {"radiance_image", &c->radiance},
-                   {"indirect_image", &c->indirect},
-                   {"visibility_image", &c->visibility}},
+        .writes = {{"occlusion_image", &c->image[IMAGE_OCCLUSION]},
+                   {"radiance_image", &c->image[IMAGE_RADIANCE]},
+                   {"indirect_image", &c->image[IMAGE_INDIRECT]},
+                   {"visibility_image", &c->image[IMAGE_VISIBILITY]}},
         .buffers = {{"Pixels", &r->pixels},
                     {"Rays", next ? &r->next_rays : &r->rays},
                     {"Hits", next ? &r->next_hits : &r->hits},
@@ -201,7 +201,7 @@ static bool report_round(const trace_run *r, int done, error *e)
     size_t n = (size_t)c->width * (size_t)c->height;
     float *sum = mem_pixels(n, sizeof *sum, e);
     if (!sum) return false;
-    gpu_image_download(c->g, &c->occlusion, sum);
+    gpu_image_download(c->g, &c->image[IMAGE_OCCLUSION], sum);
     double variance = 0.0;
     for (size_t i = 0; i < n; i++) {
         double p = (double)sum[i] / done;
@@ -261,10 +261,9 @@ static bool make_room(trace_run *r, error *e)
     pass_context *c = r->c;
     gpu *g = c->g;
     size_t rays = 2 * r->batch;
-    if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e) || !pass_make(c, &r->point, GL_RGBA32F, 0.0f, e) ||
-        !pass_make(c, &r->face, GL_RGBA32F, 0.0f, e) || (r->light && !pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e)) ||
-        (r->bounce && !pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e)) ||
-        (c->want_visibility && !pass_make(c, &c->visibility, GL_R32F, 1.0f, e)))
+    if (!pass_make_image(c, IMAGE_OCCLUSION, e) || !pass_make(c, &r->point, GL_RGBA32F, 0.0f, e) ||
+        !pass_make(c, &r->face, GL_RGBA32F, 0.0f, e) || (r->light && !pass_make_image(c, IMAGE_RADIANCE, e)) ||
+        (r->bounce && !pass_make_image(c, IMAGE_INDIRECT, e)) || (c->want_visibility && !pass_make_image(c, IMAGE_VISIBILITY, e)))
         return false;
     return gpu_buffer_make(g, &r->rays, NULL, rays * sizeof(trace_ray), "rays", e) &&
            gpu_buffer_make(g, &r->hits, NULL, rays * sizeof(trace_hit), "hits", e) &&

@@ -33,11 +33,11 @@ static bool measure(pass_context *c, error *e)
         .program = "s3ho",
         .variant = bands(c),
         PASS_PARAMS(params),
-        .writes = {{"sh0_image", &c->sh[0]},
-                   {"sh1_image", &c->sh[1]},
-                   {"sh2_image", &c->sh[2]},
-                   {"sh3_image", &c->sh[3]},
-                   {"sh4_image", &c->sh[4]}},
+        .writes = {{"sh0_image", &c->image[IMAGE_SH_0]},
+                   {"sh1_image", &c->image[IMAGE_SH_1]},
+                   {"sh2_image", &c->image[IMAGE_SH_2]},
+                   {"sh3_image", &c->image[IMAGE_SH_3]},
+                   {"sh4_image", &c->image[IMAGE_SH_4]}},
     };
     return pass_run(c, &call, e);
 }
@@ -50,14 +50,17 @@ static bool gather_pattern(pass_context *c, error *e)
     const pass_call call = {
         .program = "s3ho_filter",
         .variant = bands(c),
-        .reads =
-            {{"sh0_in", &c->sh[0]}, {"sh1_in", &c->sh[1]}, {"sh2_in", &c->sh[2]}, {"sh3_in", &c->sh[3]}, {"sh4_in", &c->sh[4]}},
+        .reads = {{"sh0_in", &c->image[IMAGE_SH_0]},
+                  {"sh1_in", &c->image[IMAGE_SH_1]},
+                  {"sh2_in", &c->image[IMAGE_SH_2]},
+                  {"sh3_in", &c->image[IMAGE_SH_3]},
+                  {"sh4_in", &c->image[IMAGE_SH_4]}},
         .writes = {{"sh0_out", &t[0]}, {"sh1_out", &t[1]}, {"sh2_out", &t[2]}, {"sh3_out", &t[3]}, {"sh4_out", &t[4]}},
     };
     ok = ok && pass_run(c, &call, e);
     for (int k = 0; k < images(c); k++) {
-        gpu_image_free(&c->sh[k]);
-        c->sh[k] = t[k];
+        gpu_image_free(&c->image[IMAGE_SH_0 + k]);
+        c->image[IMAGE_SH_0 + k] = t[k];
     }
     return ok;
 }
@@ -71,7 +74,7 @@ static bool upload_relight(pass_context *c, error *e)
     for (int k = 0; k < images(c); k++) {
         memcpy(v, c->relight_sh[k], 4 * n * sizeof *v);
         for (size_t i = 0; k == 0 && i < n; i++) v[4 * i + 3] = (float)((double)v[4 * i] / (M_PI * Y00));
-        gpu_image_upload(c->g, &c->sh[k], 0, v);
+        gpu_image_upload(c->g, &c->image[IMAGE_SH_0 + k], 0, v);
     }
     free(v);
     return true;
@@ -98,12 +101,14 @@ static bool light(pass_context *c, error *e)
         .program = "s3ho_light",
         .variant = v.words,
         PASS_PARAMS(params),
-        .reads = {{"sh0_image", &c->sh[0]},
-                  {"sh1_image", &c->sh[1]},
-                  {"sh2_image", &c->sh[2]},
-                  {"sh3_image", &c->sh[3]},
-                  {"sh4_image", &c->sh[4]}},
-        .writes = {{"occlusion_image", &c->occlusion}, {"radiance_image", &c->radiance}, {"visibility_image", &c->visibility}},
+        .reads = {{"sh0_image", &c->image[IMAGE_SH_0]},
+                  {"sh1_image", &c->image[IMAGE_SH_1]},
+                  {"sh2_image", &c->image[IMAGE_SH_2]},
+                  {"sh3_image", &c->image[IMAGE_SH_3]},
+                  {"sh4_image", &c->image[IMAGE_SH_4]}},
+        .writes = {{"occlusion_image", &c->image[IMAGE_OCCLUSION]},
+                   {"radiance_image", &c->image[IMAGE_RADIANCE]},
+                   {"visibility_image", &c->image[IMAGE_VISIBILITY]}},
     };
     return pass_run(c, &call, e);
 }
@@ -111,10 +116,10 @@ static bool light(pass_context *c, error *e)
 static bool run(pass_context *c, error *e)
 {
     for (int k = 0; k < images(c); k++)
-        if (!pass_make(c, &c->sh[k], GL_RGBA32F, 0.0f, e)) return false;
-    if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e)) return false;
-    if (c->want_radiance && !pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e)) return false;
-    if (c->want_visibility && !pass_make(c, &c->visibility, GL_R32F, 1.0f, e)) return false;
+        if (!pass_make_image(c, IMAGE_SH_0 + k, e)) return false;
+    if (!pass_make_image(c, IMAGE_OCCLUSION, e)) return false;
+    if (c->want_radiance && !pass_make_image(c, IMAGE_RADIANCE, e)) return false;
+    if (c->want_visibility && !pass_make_image(c, IMAGE_VISIBILITY, e)) return false;
     if (c->relight_sh[0]) {
         if (!upload_relight(c, e)) return false;
     } else if (!measure(c, e) || (c->set.blur > 0 && !gather_pattern(c, e))) {

@@ -22,14 +22,16 @@ static bool run(pass_context *c, error *e)
     variant v = {{0}};
     variant_add(&v, c->want_radiance, "LIGHT");
     variant_add(&v, c->want_visibility, "VISIBILITY");
-    if (!pass_make(c, &c->occlusion, GL_R32F, 1.0f, e)) return false;
-    if (c->want_radiance && !pass_make(c, &c->radiance, GL_RGBA32F, 0.0f, e)) return false;
-    if (c->want_visibility && !pass_make(c, &c->visibility, GL_R32F, 1.0f, e)) return false;
+    if (!pass_make_image(c, IMAGE_OCCLUSION, e)) return false;
+    if (c->want_radiance && !pass_make_image(c, IMAGE_RADIANCE, e)) return false;
+    if (c->want_visibility && !pass_make_image(c, IMAGE_VISIBILITY, e)) return false;
     const pass_call call = {
         .program = "ssdo",
         .variant = v.words,
         PASS_PARAMS(params),
-        .writes = {{"occlusion_image", &c->occlusion}, {"radiance_image", &c->radiance}, {"visibility_image", &c->visibility}},
+        .writes = {{"occlusion_image", &c->image[IMAGE_OCCLUSION]},
+                   {"radiance_image", &c->image[IMAGE_RADIANCE]},
+                   {"visibility_image", &c->image[IMAGE_VISIBILITY]}},
     };
     return pass_run(c, &call, e);
 }
@@ -43,10 +45,11 @@ static bool run_bounce(pass_context *c, error *e)
     const pass_call call = {
         .program = "ssdo_bounce",
         PASS_PARAMS(params),
-        .reads = {{"sender_image", exitant ? &c->beauty : &c->radiance}, {"albedo_image", exitant ? &c->beauty : &c->albedo}},
-        .writes = {{"indirect_image", &c->indirect}},
+        .reads = {{"sender_image", exitant ? &c->image[IMAGE_BEAUTY] : &c->image[IMAGE_RADIANCE]},
+                  {"albedo_image", exitant ? &c->image[IMAGE_BEAUTY] : &c->image[IMAGE_ALBEDO]}},
+        .writes = {{"indirect_image", &c->image[IMAGE_INDIRECT]}},
     };
-    return pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e) && pass_run(c, &call, e);
+    return pass_make_image(c, IMAGE_INDIRECT, e) && pass_run(c, &call, e);
 }
 
 static const variant_row variants[] = {

@@ -94,15 +94,15 @@ bool pass_suns(pass_context *c, error *e)
     const pass_call march = {
         .program = "suns",
         PASS_PARAMS(params),
-        .reads = {{"surface_image", &c->surface}},
+        .reads = {{"surface_image", &c->image[IMAGE_SURFACE]}},
         .writes = {{"sun_image", &light}},
     };
     const pass_call add = {
         .program = "suns_add",
-        .variant = c->visibility.id ? "VISIBILITY" : NULL,
+        .variant = c->image[IMAGE_VISIBILITY].id ? "VISIBILITY" : NULL,
         PASS_PARAMS(params),
         .reads = {{"sun_image", &light}},
-        .writes = {{"scalar_image", &c->visibility}, {"light_image", &c->radiance}},
+        .writes = {{"scalar_image", &c->image[IMAGE_VISIBILITY]}, {"light_image", &c->image[IMAGE_RADIANCE]}},
     };
     bool ok = pass_make(c, &light, GL_RGBA32F, 0.0f, e) && pass_run(c, &march, e) && pass_run(c, &add, e);
     gpu_image_free(&light);

@@ -125,7 +125,7 @@ static bool choose(pass_context *c, vpl *lights, int *count, error *e)
     }
     float *radiance = mem_pixels((size_t)c->width * (size_t)c->height * 4, sizeof *radiance, e);
     if (!radiance) return false;
-    gpu_image_download(c->g, &c->radiance, radiance);
+    gpu_image_download(c->g, &c->image[IMAGE_RADIANCE], radiance);
     *count = vpl_choose(c->gb, radiance, c->gb->albedo, c->set.vpl_count, lights);
     free(radiance);
     return true;
@@ -136,13 +136,13 @@ static bool run_bounce(pass_context *c, error *e)
     vpl_params params = {.strength = (float)c->set.bounce_strength};
     gpu_image image = {0};
     vpl *lights = mem_zero((size_t)c->set.vpl_count, sizeof *lights, e);
-    bool ok = lights && pass_make(c, &c->indirect, GL_RGBA32F, 0.0f, e) && choose(c, lights, &params.count, e);
+    bool ok = lights && pass_make_image(c, IMAGE_INDIRECT, e) && choose(c, lights, &params.count, e);
     if (ok && params.count > 0) {
         const pass_call call = {
             .program = "vpl",
             PASS_PARAMS(params),
             .reads = {{"lights_image", &image}},
-            .writes = {{"indirect_image", &c->indirect}},
+            .writes = {{"indirect_image", &c->image[IMAGE_INDIRECT]}},
         };
         ok = upload(c, lights, params.count, &image, e) && pass_run(c, &call, e);
     }

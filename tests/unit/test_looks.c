@@ -311,9 +311,9 @@ static void relit_composite(rig *r, gbuffer *gb, bool all, double amount, float 
     must(pass_begin(&c, &e), &e);
     must(method_find("hemisphere")->run(&c, &e) && pass_irradiance(&c, &e) && pass_specular(&c, &e) && pass_composite(&c, &e),
          &e);
-    gpu_image_download(c.g, &c.occlusion, occlusion);
-    gpu_image_download(c.g, &c.specular, specular);
-    gpu_image_download(c.g, &c.composite, composite);
+    gpu_image_download(c.g, &c.image[IMAGE_OCCLUSION], occlusion);
+    gpu_image_download(c.g, &c.image[IMAGE_SPECULAR], specular);
+    gpu_image_download(c.g, &c.image[IMAGE_COMPOSITE], composite);
     pass_end(&c);
 }
 

@@ -178,7 +178,7 @@ static void odd_values_keep_their_range(void **state)
         options_defaults(&o);
         open_job(&j, &o, &log, &ways[i]);
         pass_context c = {.g = &j.g};
-        gpu_image *const images[] = {&c.occlusion, &c.radiance, &c.composite};
+        gpu_image *const images[] = {&c.image[IMAGE_OCCLUSION], &c.image[IMAGE_RADIANCE], &c.image[IMAGE_COMPOSITE]};
         for (int k = 0; k < 3; k++) {
             must(gpu_image_make(&j.g, images[k], k ? GL_RGBA32F : GL_R32F, WIDTH, HEIGHT, 1, &e), &e);
             must(gpu_image_send(&j.g, images[k], k ? v : one, &e), &e);
