@@ -123,7 +123,7 @@ static void put_row(record *r, const option_row *row, const options *o, const op
     put_string(r, "--");
     put_string(r, row->name);
     if (row->kind == OPT_FLAG) return;
-    put_string(r, " ");
+    put_string(r, strncmp(value, "--", 2) == 0 ? "=" : " "); // which would be taken for the next option
     put_value(r, value);
 }
 

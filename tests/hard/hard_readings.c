@@ -270,10 +270,10 @@ static void filtered_against_closest(void **state)
             hard_cell(t, "| %s | %s | %.4f | %.4f |\n", scenes[s], filters[f], rms[s][f][0], rms[s][f][1]);
     }
     hard_table_end(t);
-    printf(
-        "figure: filtered positions and encoded normals: at most %.4f rms off the closest ones (%.4f in 512 x 384), at most %.2f "
-        "times what a fifth of a pixel does\n",
-        worst[0], worst[1], most);
+    printf("figure: filtered positions and encoded normals: at most %.4f rms off the closest ones, %.2f times what a fifth of a "
+           "pixel does\n",
+           worst[0], most);
+    if (hard_whole()) printf("figure: the same in 512 x 384: at most %.4f rms\n", worst[1]);
     assert_true(worst[0] < 0.04 && worst[1] < 0.03 && most < 2.0);
 }
 
