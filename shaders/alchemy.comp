@@ -1,8 +1,8 @@
 #version 450 core
 // Alchemy obscurance (McGuire et al. 2011): S = (2 pi c / n) sum max(0, N.w - bias) H(R - |w|) / max(c^2, w.w), c = 0.1 R,
-// A = max(0, 1 - scale S)^contrast. Taps on a spiral over the projected disc, uniform in radius and angle, a golden section of a turn
-// apart (the chapter's 7 / 9 of a turn puts them on nine spokes, however many they are). This pass stores 1 - S;
-// tone.comp makes A of it after the blur, for filters act on linear quantities (README, correction 9).
+// A = max(0, 1 - scale S)^contrast. Taps lie on a spiral over the projected disc, uniform in radius. Neighbours on the spiral are a
+// golden section of a turn apart; 7 / 9 of a turn would put all taps on nine spokes. This pass stores 1 - S. tone.comp makes A of it
+// after the blur, because filters act on linear quantities (README, correction 9).
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
 

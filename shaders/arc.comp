@@ -5,12 +5,13 @@
 //   BENT:   bent = 2/3 N - sum w (blocked directions) / sum w        the cosine-weighted mean open direction: N on an empty plane
 //   LIGHT:  radiance = sum w (open share x environment) / sum w,  visibility = its luminance over that of the open sky
 //   HALF_DIFFERENCE: how much the second half of the slices (every other one) moved the occlusion
-//   ROUND:  the sums go on from those of an earlier round of as many slices, between which these fall; together they are one set
-//   BOUNCE: indirect = sum w (blocked share x what the nearest blocker sends) / sum w; with EXITANT the sender is a picture that the
-//           renderer lit, else light that the senders' albedo is still to be multiplied by
-// The sectors are blocked by HORIZON or BITMASK, the older methods, or by RUNS and PLANES, which are `arc`.
+//   ROUND:  adds to the sums of the earlier rounds. A later round has as many slices as all rounds before it, and they lie halfway
+//           between those, so that all slices together are evenly spaced
+//   BOUNCE: indirect = sum w (blocked share x light that the nearest blocker sends) / sum w. With EXITANT the sender image is a picture
+//           that the renderer lit. Without, it is light before albedo, and is multiplied by the sender's albedo here
+// HORIZON (gtao), BITMASK (bitmask) or RUNS (arc) says what blocks the sectors; PLANES adds planes to RUNS.
 #if !defined(LIGHT) && !defined(BOUNCE)
-#define LIMITED // by the radius; light comes from any distance
+#define LIMITED // to the radius; light comes from any distance
 #endif
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
@@ -41,8 +42,8 @@ layout(r32f) writeonly uniform image2D half_difference_image; // of the occlusio
 layout(rg32f) uniform image2D sums_image; // of earlier rounds: sum w (open share), sum w
 #endif
 
-// What a surface sends to us. The side that the camera does not see is a guess: it looks our way, and what it sees is much what we
-// see, of which this share.
+// Light that a surface sends to the receiver. The camera does not see its back, so the light of a back is a guess: it faces the
+// receiver and sees much the same surroundings, so it gets this share of the receiver's own light.
 const float UNSEEN = 0.4;
 vec3 unseen = vec3(0.0);
 
@@ -101,7 +102,8 @@ void main() {
     float tangent = ball_tangent(P);
     vec3 turn = pixel_noise(p, params.seed);
 #ifdef ROUND
-    // The first round's two slices lie at (i + turn.x) / 2 of half a turn; n more, half a step off, fall between the n there are.
+    // The first round's two slices lie at (i + turn.x) / 2 of half a turn. Each later round shifts its slices by half a step, so that
+    // they fall between the slices there are.
     if (params.before > 0) turn.x = fract(0.5 * float(params.before) * turn.x + 0.5);
     turn.yz = fract(turn.yz + float(params.before) * vec2(0.6180340, 0.7548777));
 #endif
@@ -131,7 +133,7 @@ void main() {
         Side side = opposite(side_of(V, across, N, eye_distance, n, weight), n);
         Line line = lines.left;
         Sectors slots = all_open();
-        // Both sides of the slice, the near one last; sectors are counted from the other end on the far side.
+        // Both sides of the slice, the near one last. On the far side sectors are counted from the other end.
         for (int k = 0; k < 2; k++) {
             march(slots, side, line, P, N, k == 0 ? 1.0 - noise.x : noise.x, k == 0 ? 1.0 - noise.y : noise.y);
             if (k == 0) {

@@ -5,11 +5,12 @@
 //   SPLIT              beauty - (1 - a) albedo direct  (+ albedo indirect)             only direct diffuse light is occluded
 //   (none)             beauty a (+ albedo indirect)                                    a = lerp(1, occlusion, amount)
 // BACKGROUND: what is behind surfaces that are relit: 0 nothing, 1 the beauty, 2 the environment.
-// MULTIPLY_ALL: the way of games, the occlusion is multiplied onto the specular light too (README, correction 10). DEPTHMASK: the whole is
-// scaled by 1 + strength x depthmask; Luft adds it to display values, but a sum would go negative and depend on the exposure.
-// Relit pixels that the surface covers by k < 1: k surface + (1 - k) background.
-// The composite of a beauty must come through to the bit where nothing is done to it, and drawing may flush denormals: it is
-// dispatched on every device (src/passes/composite.c).
+// MULTIPLY_ALL: the occlusion is multiplied onto the specular light too, as games do (README, correction 10).
+// DEPTHMASK: the result is scaled by 1 + strength x depthmask. Luft adds the mask to display values; in linear light a sum could go
+// negative and would depend on the exposure.
+// A relit pixel whose coverage k is below 1: k surface + (1 - k) background.
+// A beauty to which nothing is done must keep every bit. Drawing may flush denormals, so its composite is dispatched on every device
+// (src/passes/composite.c).
 #include "include/frame.glsl"
 #include "include/environment.glsl"
 #include "params/composite.glsl"
@@ -89,8 +90,8 @@ vec3 surface(ivec2 p, float k) {
 }
 
 // What is seen behind the surface of pixel p: the beauty of the nearest pixel that no surface touches, or the environment.
-// `wanted`: somebody looks. A software renderer runs the body of a branch for lanes that did not take it, but it leaves a loop when
-// no lane is left in it.
+// `wanted`: the result is used. A software renderer runs a branch for all lanes if one lane takes it, but it leaves a loop when no lane
+// is left in it. So the loop is what skips the work.
 vec3 background(ivec2 p, bool wanted) {
 #if BACKGROUND == 2
     vec3 ray = is_orthographic() ? vec3(0.0, 0.0, 1.0) : normalize(ray_at(vec2(p) + 0.5));

@@ -1,14 +1,14 @@
 #version 450 core
-// A filter that knows the noise it is to remove. From the edge-aware means (include/bilateral.glsl) over a window of the estimate m,
-// of its `half_difference` c when the other half of the slices came in, and of their squares it takes
+// A filter that knows the noise it removes. m is the estimate, c its `half_difference`: how much the second half of the slices moved it.
+// From edge-aware means (include/bilateral.glsl) of m, c and their squares over a window it computes
 //   S = mean(m^2) - mean(m)^2   the variance in the window, of noise and of the picture
 //   v = mean(c^2)              the variance of the noise: exactly that if the halves are independent, less if they are stratified
 //   g = max(0, S - v) / S       the share of the picture in it
 //   result = mean(m) + g (m - mean(m))
-// which errs least of all mixtures of m and mean(m) (the filter of Wiener; Lee 1980). Where sampling has converged v is nothing and
-// m stays as it is.
-// ACROSS: the first direction, which leaves the means along it. ERRORS: also the square of what the result still errs by, from the
-// change that is left and the picture that is lost.
+// Of all mixtures of m and mean(m) this one has the least expected error (a Wiener filter; Lee 1980). Where sampling has converged v is
+// 0 and m stays as it is.
+// ACROSS: the first direction; it stores the means along rows. ERRORS: also stores the squared error of the result, estimated from the
+// noise that is left and the detail that is lost.
 #include "include/frame.glsl"
 #include "include/bilateral.glsl"
 

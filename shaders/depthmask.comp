@@ -19,7 +19,7 @@ float normalised(float depth) { return clamp((depth - params.near) * params.scal
 
 float gaussian(int i) { return exp(-0.5 * float(i * i) / (params.sigma * params.sigma)); }
 
-// Near the borders the Gaussian is cut alike on both sides: one-sided it would see an edge in every slope.
+// Near a border the Gaussian is cut on both sides alike. Cut on one side only, it would take every slope for an edge.
 int reach_at(int x, int size) { return min(params.radius, min(x, size - 1 - x)); }
 
 void main() {
@@ -31,7 +31,7 @@ void main() {
     int reach = depth != 0.0 ? reach_at(p.y, frame_size.y) : -1;
     for (int i = -reach; i <= reach; i++) sums += gaussian(i) * FETCH(sums_image, p + ivec2(0, i)).rg;
     if (depth != 0.0) mask = sums.r / sums.g - normalised(depth);
-    imageStore(mask_image, p, vec4(mask < -1e-6 ? mask : 0.0)); // not the rounding of the sums
+    imageStore(mask_image, p, vec4(mask < -1e-6 ? mask : 0.0)); // smaller values are rounding of the sums
 #else
     int reach = reach_at(p.x, frame_size.x);
     for (int i = -reach; i <= reach; i++) {

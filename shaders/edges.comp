@@ -1,10 +1,11 @@
 #version 450 core
-// Layers of pixels that a surface covers only in part and whose centre missed it (no position): taken from the nearest pixel with a
-// surface, of those equally near the one with the most similar normal (src/gbuffer/README.md, Coverage).
+// Fills the layers of pixels that a surface covers in part but that have no position, because the pixel's centre missed the surface. The
+// values come from the nearest pixel with a surface; among equally near ones, from the one with the most similar normal
+// (src/gbuffer/README.md, Coverage).
 #include "include/frame.glsl"
 
 PICTURE(r32f, coverage_image);
-// Written only where there is no surface and read only where there is one, so no pixel is both.
+// Pixels without a surface are written, pixels with one are read. So no pixel is both read and written.
 #ifdef OCCLUSION
 layout(r32f) uniform image2D occlusion_image;
 #endif
@@ -42,7 +43,7 @@ void main() {
         for (int x = -REACH; x <= REACH; x++) {
             ivec2 q = p + ivec2(x, y);
             if (depth_at(q) == 0.0) continue;
-            // Normals decide among neighbours of one distance, and veto only by half a pixel: the foreground is the nearest.
+            // Distance decides first: the nearest surface is the foreground. The normal decides only among nearly equal distances.
             float cost = float(x * x + y * y) + 0.9 * (1.0 - dot(N, normal_at(q)));
             if (cost < best) {
                 best = cost;

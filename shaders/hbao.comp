@@ -3,9 +3,9 @@
 // recorded surfaces; h is the elevation over the plane across V, t that of the tangent:
 //   AO = mean over directions of sum W(S_i) (sin h_i - sin h_prev) over the samples that raise the horizon,
 //   h_0 = t + bias, W = 1 - (d / R)^2, samples beyond R ignored;  occlusion = 1 - AO
-// All beneath the horizon is blocked, and every direction of the hemisphere counts alike: solid angle, not cosine. The paper takes
-// elevations about the camera's axis and directions uniform on the screen; about V and projected to the screen, an empty plane is
-// open off the axis too (README, correction 12).
+// Everything beneath the horizon counts as blocked. All directions weigh alike: by solid angle, not by cosine. The paper measures
+// elevations about the camera's axis and takes directions uniform on the screen. Here both are about V, so that an empty plane is open
+// off the axis too (README, correction 12).
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
 #include "include/recorded.glsl"
@@ -41,7 +41,7 @@ float direction_occlusion(vec3 P, vec3 N, vec3 V, vec3 across, vec2 origin, floa
         if (!surface_at(origin + reach * ((float(i) + jitter) / float(params.steps)), S)) continue;
         vec3 w = S - P;
         float ww = dot(w, w), rr = params.radius * params.radius;
-        // Not above the receiver's own plane, to rounding: no occluder, whatever the bias.
+        // A sample that is not above the receiver's own plane (to rounding) is no occluder, whatever the bias.
         if (ww > rr || dot(N, w) <= 2.0 * rounding(S)) continue;
         float elevation = dot(w, V) * inversesqrt(ww);
         if (elevation <= horizon) continue;

@@ -1,11 +1,12 @@
 #version 450 core
-// Normal-oriented hemisphere (Filion, McNaughton 2008): N points inside the hemisphere over the normal; one is occluded when the
-// recorded surface is nearer to the camera than the point (README, correction 6), and counts only if that surface's depth is within R of
-// the receiver's (range check).
+// Normal-oriented hemisphere (after Filion and McNaughton 2008; kernel and range check are those of Chapman's SSAO tutorial, 2013). N
+// points lie inside the hemisphere over the normal. A point is occluded if the recorded surface is nearer to the camera than the point
+// (README, correction 6). It counts only if that surface's depth is within R of the receiver's (range check).
 //   point i = P + R u_i lerp(0.1, 1, t_i^2) d_i,   t_i = (i + 0.5) / N, u_i uniform in 0..1
 //   d_i     = a point uniform in the half cube [-1, 1]^2 x [0, 1] of the tangent frame, normalised
-//   occlusion = 1 - occluded / N, so every point counts alike: neither cosine nor quite solid angle, for a cube has corners.
-// The tutorial turns its whole kernel about the normal by a random vector; here every point is turned by an angle of its own.
+//   occlusion = 1 - occluded / N
+// Every point counts alike. So directions are not weighted by cosine, and because a cube has corners not quite by solid angle.
+// The tutorial turns its whole kernel about the normal by one random vector. Here each point has an angle of its own.
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
 #include "include/recorded.glsl"

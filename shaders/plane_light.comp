@@ -1,6 +1,6 @@
 #version 450 core
 // What each plane sends to the surfaces it faces: the mean of light x albedo over its own pixels, on a fixed grid over the frame. One
-// work group; every invocation looks after one plane, so that the sum has one order.
+// work group; each invocation sums one plane, so the order of the sum is fixed.
 #include "include/frame.glsl"
 #include "include/arc_params.glsl"
 

@@ -1,14 +1,14 @@
 #version 450 core
-// Spheres that the camera does not see, each a cone of directions, exactly clipped by the receiver's horizon. Where cones overlap the
-// later one counts only for the rest: F_i is the cosine-weighted share of the hemisphere in cone i, times 1 - the share of the cone that
-// lies in cone j, for each j before i. The whole is taken to be independent of what the method found:
+// Spheres that the camera does not see. Each is a cone of directions, exactly clipped by the receiver's horizon. F_i is the
+// cosine-weighted share of the hemisphere in cone i. Where cones overlap, directions count for the first of them: F_i is multiplied by
+// 1 - (share of cone i that lies in cone j) for each j before i. What the cones block is taken to be independent of what the method found:
 //   occlusion *= 1 - sum F_i                      of what the spheres block within R
 //   radiance, visibility *= 1 - sum F_i L_i / E   at any distance; L_i the environment's mean over the cone, E the irradiance / pi
 //   bent      -= F_i d_i                             d_i: the cone's axis
-//   VECTOR:   radiance and visibility are scaled like occlusion, and SH scales the sh layers so, in a run of its own (no program has
-//             more images than GL promises): a relight agrees
-//   BOUNCE:   indirect += sum F_i albedo_i E(-d_i) (1 - m (d_i . N)) / 2; the last factor is the mean open share, over the receiver's
-//             tangent plane, of the side that the receiver sees, whose normals make the mean cosine m with -d_i
+//   VECTOR:   radiance and visibility are scaled like occlusion, and SH scales the sh layers by the same factor, so that a relight
+//             agrees. SH is a run of its own, because one program may not have more images than GL promises
+//   BOUNCE:   indirect += sum F_i albedo_i E(-d_i) (1 - m (d_i . N)) / 2. The last factor is the mean open share of the side of the
+//             sphere that the receiver sees, over the receiver's tangent plane; m is the mean cosine between that side's normals and -d_i
 #include "include/frame.glsl"
 #include "include/environment.glsl"
 

@@ -1,6 +1,6 @@
 #version 450 core
-// Brings the 16 sample sets of the 4 x 4 pattern together: the mean of the four 4 x 4 windows that hold the pixel, so every set has the
-// same weight where nothing interrupts; taps across an edge lose theirs (plane distance and normals, as in blur.comp). The
+// Joins the 16 sample sets of the 4 x 4 pattern: the result is the mean of the four 4 x 4 windows that hold the pixel. Away from edges
+// every set has the same weight. Taps across an edge lose their weight (plane distance and normals, as in blur.comp). The
 // coefficients are linear in visibility, so the filter acts on them and not on light.
 #include "include/frame.glsl"
 

@@ -1,7 +1,8 @@
 #version 450 core
-// GGX specular of the environment by filtered importance sampling (Colbert and Krivanek, GPU Gems 3, 2007), not occluded.
+// Specular light of the environment, not occluded: GGX (Walter et al. 2007) by importance sampling, where the density of a sample
+// gives the mip level of its lookup (Colbert and Krivanek 2007, GPU Gems 3).
 //   half vectors with pdf D(h) (n.h); L weighted by F G (v.h) / ((n.v)(n.h)); level from Omega_s = 1 / (samples * pdf(l)).
-// alpha = roughness^2, F0 = lerp(0.04, base colour, metallic). Also writes kD = (1 - F)(1 - metallic), F at the normal's own angle.
+// alpha = roughness^2, F0 = lerp(0.04, base colour, metallic). Also writes kD = (1 - F)(1 - metallic), with F at the angle between N and V.
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
 #include "include/environment.glsl"

@@ -1,7 +1,7 @@
 #version 450 core
-// Light of the environment's suns, small bright sources taken out of the map; suns_add.comp adds it to the light of the rest. Each
-// sun gets one side of a slice, marched as `arc` marches (README, Suns), whose 64 sectors divide the sun's own disc; so a penumbra
-// has no noise. Planes do not stand in here: a plane's guess of a shadow is all or nothing, and errs more often than it helps.
+// Light of the environment's suns: small bright sources taken out of the map. suns_add.comp adds it to the light of the rest. For each
+// sun one side of a slice is marched as `arc` marches (README, Suns). Its 64 sectors divide the sun's own disc, so a penumbra has no
+// noise. Planes do not stand in here: a plane would put a point wholly in shadow or wholly out of it, and is wrong too often.
 #define SUNS
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
@@ -13,7 +13,7 @@
 #include "include/suns.glsl"
 #include "include/arc_march.glsl"
 
-layout(rgba32f) writeonly uniform image2D sun_image; // rgb light, a its share of what arrives with nothing in the way
+layout(rgba32f) writeonly uniform image2D sun_image; // rgb: light; a: its share of the light that arrives with nothing in the way
 
 // Where a ray leaves the box of all surfaces, beyond which nothing can block it; in pixels along its line.
 float way_out(vec3 P, vec3 S, Line line) {

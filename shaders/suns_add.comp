@@ -1,8 +1,8 @@
 #version 450 core
-// Adds the suns' light to the filtered light of the rest of the environment. Their shadows have sharp edges, so all they get is the
-// average over a pixel's neighbours on its own surface (weights 1 2 1 each way): it takes out the grain that a march's steps leave
-// along the far edge of a shadow, and the stairs of the others.
-// With VISIBILITY the share of open light takes the suns in, weighed against the irradiance of the rest of the map.
+// Adds the suns' light to the filtered light of the rest of the environment. Shadows of suns have sharp edges, so the suns' light is only
+// averaged over a pixel's neighbours on its own surface (weights 1 2 1 in each direction). This removes the grain that a march's steps
+// leave along the far edge of a shadow, and the stairs along its other edges.
+// VISIBILITY: also adds the suns to the share of open light, weighed against the irradiance of the rest of the map.
 #include "include/frame.glsl"
 #include "include/environment.glsl"
 #include "include/arc_params.glsl"

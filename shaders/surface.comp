@@ -1,6 +1,6 @@
 #version 450 core
-// Depth and normal in one texel, for passes that read many of them: the bits of the depth, and pack_normal; with PLANES its highest
-// bit is set where the surface lies on one of the frame's planes.
+// Depth and normal in one texel, for passes that read many of them: the bits of the depth, then pack_normal. With PLANES the highest bit
+// of the second word is set where the surface lies on one of the frame's planes.
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
 #include "include/arc_params.glsl"

@@ -1,6 +1,6 @@
 #version 450 core
-// Sum of the squared errors of a tile's surfaces, and their number. One work group a tile; sums are taken in a fixed order, so that
-// the same picture stops at the same budgets.
+// Sum of the squared errors of a tile's surfaces, and their number. One work group a tile. The order of the sum is fixed, so that
+// sampling stops after the same number of samples on every run.
 #include "include/frame.glsl"
 
 #include "params/tile_error.glsl"

@@ -1,6 +1,6 @@
 #version 450 core
-// Where the pixels' points lie on the mesh. FIND sends a short ray through each along the line of sight; SETTLE, when it is traced,
-// puts the point onto the surface that was found. Where the mesh is not, the point stays, with the picture's normal.
+// Finds where the pixels' points lie on the mesh. FIND sends a short ray through each point along the line of sight. After it is traced,
+// SETTLE moves the point onto the surface that the ray hit. A point whose ray hit nothing stays, with the picture's normal.
 #include "include/frame.glsl"
 #include "include/trace.glsl"
 #ifdef SETTLE

@@ -1,6 +1,6 @@
 #version 450 core
-// A sample's first rays: one by cosine from every point, and with LIGHT one by brightness.
-// Rays i and batch + i belong to pixel i. DISTANT: what lies beyond the radius matters too, and what is hit.
+// A sample's first rays from every point: one in a cosine-weighted direction, and with LIGHT one chosen by the environment's brightness.
+// Rays i and batch + i belong to pixel i. DISTANT: rays go beyond the radius, and the nearest hit is wanted.
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
 #include "include/environment.glsl"

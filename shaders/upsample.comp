@@ -1,8 +1,8 @@
 #version 450 core
-// Layers of a frame of half the size (src/gbuffer/half.h) brought to the full one: a bilinear mean over the four nearest small pixels, each
-// weighing less the further it lies off the pixel's tangent plane, in small footprints, and the more its normal differs (as in
-// blur.comp). Where none of the four is on the pixel's surface, the best of sixteen is taken as it is; where no surface is near at all
-// (a speck seen edge-on) the pixel is open, and with OPEN_LIGHT the light of colour 0 is the SH irradiance / pi.
+// Brings the layers of a frame of half the size (src/gbuffer/half.h) to full size. A pixel is the bilinear mean of the four nearest small
+// pixels. A small pixel weighs less the further it lies off the pixel's tangent plane (in small footprints) and the more its normal
+// differs (as in blur.comp). If none of the four is on the pixel's surface, the pixel copies the best of sixteen. If no surface is near
+// (a speck seen edge-on), the pixel is open; with OPEN_LIGHT its colour 0 is the SH irradiance / pi.
 // SCALARS and COLOURS say how many r32f and rgba32f images go through together.
 #include "include/frame.glsl"
 #ifdef OPEN_LIGHT
@@ -79,8 +79,8 @@ float agreement(ivec2 q, float depth, vec3 P, vec3 N, float scale) {
     return exp(-0.5 * off_plane * off_plane) * pow(max(0.0, dot(N, FETCH(small_normal, q).xyz)), 8.0);
 }
 
-// The small pixel of 4 x 4 that agrees best, by a measure that still tells far ones apart; negative if none holds a surface, or if it is
-// not `wanted`. A software renderer runs the body of a branch for lanes that did not take it, but leaves a loop when no lane is left.
+// The small pixel of 4 x 4 that agrees best, by a measure that still ranks those far from the plane. Negative if none holds a surface, or
+// if it is not `wanted`. A software renderer runs a branch for all lanes if one lane takes it, but it leaves a loop when no lane is left.
 ivec2 best_of(ivec2 base, vec3 P, vec3 N, float scale, bool wanted) {
     float least = 1e30;
     ivec2 best = ivec2(-1);

@@ -1,5 +1,5 @@
-// Sum of the directions of a slice's blocked sectors, each weighing its share: the slice in cells of equal angle, of which
-// each stands at its middle.
+// Sum of the directions of a slice's blocked sectors, each weighted by its share. The slice is divided into cells of equal angle; the
+// middle of a cell stands for all its directions.
 vec3 blocked_moment(Side s, vec3 V, vec3 across, float n, uvec2 blocked, float jitter) {
     const int CELLS_OF_BENT = 24;
     vec3 sum = vec3(0.0);

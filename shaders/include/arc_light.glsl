@@ -1,10 +1,9 @@
 // Light through the open sectors of a slice.
 
-// The slice in CELLS pieces of equal angle; each looks the environment up once and weighs it by its share of open sectors. `all` is
-// what arrives with nothing in the way. The level is that of a FOOTPRINT of the piece's solid angle: what lies beside the slice comes
-// in by the turn of the slices from pixel to pixel, and a level that covers the whole piece brings light from beyond what blocks it.
-// (Error over five samples and their unseen variants at 64 samples: 24 pieces looked up whole .102 and .100, by this eighth .097 and
-// .095; 24, 12 and 6 pieces at that footprint differ by .0005.)
+// The slice is divided into CELLS pieces of equal angle. Each piece looks the environment up once and weighs it by its share of open
+// sectors. `all` is the light that arrives with nothing in the way. The mip level covers the share FOOTPRINT of the piece's solid angle.
+// A level for the whole piece would bring in light from beyond what blocks it. What the smaller one leaves out beside the slice, the
+// slices of neighbouring pixels see. Measured: tests/bench/RESULTS.md, Sampling.
 const int CELLS = 8;
 const float FOOTPRINT = 0.125;
 

@@ -36,7 +36,7 @@ Lines lines_of(vec3 V, vec3 across, vec2 origin, float tangent) {
 }
 
 // No step lies beyond this. The reach is a quotient, and drivers divide with errors of up to 2.5 units in the last place (GLSL 4.50,
-// 4.7.1): a step that lies at the reach itself, as whole pixels do under an orthographic camera, is taken by all of them.
+// 4.7.1). Under an orthographic camera a step can lie at the reach itself. The margin makes every driver take that step.
 float last_step(Line line) { return min(line.reach * (1.0 + 4.0 * ULP), line.border); }
 
 float ball_tangent(vec3 P) {
@@ -44,7 +44,8 @@ float ball_tangent(vec3 P) {
     return squared > 0.0 ? params.radius * inversesqrt(squared) : -1.0;
 }
 
-// Distance of step i in pixels: a pixel beyond the step before, and of what that leaves of the line at the squares of an even spacing.
+// Distance of step i in pixels. Each step is at least a pixel beyond the one before. The rest of the line is divided by squares of an
+// even spacing, so steps are dense near the receiver.
 float step_distance(int i, float jitter, float limit) {
     float u = (float(i) + jitter) * params.inverse_steps;
     return float(i + 1) + max(0.0, limit - float(params.steps)) * u * u;

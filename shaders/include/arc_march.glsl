@@ -1,22 +1,22 @@
 // Walking outwards along one side of a slice: samples become runs, runs become blocked arcs (README, Runs).
 //
-// A run is a piece of connected surface: either tangent plane predicts the other sample. It blocks the arc from its lowest share to
-// its highest, its back included, which lies `thickness` behind its front on the view ray. The run that starts at the receiver
-// itself blocks all between its highest point and the tangent: its highest share is 1 from the start.
+// A run is a piece of connected surface: of two neighbouring samples, the tangent plane of one predicts the other. A run blocks the arc
+// from its lowest share to its highest. Its back counts too; it lies `thickness` behind the front on the view ray. The run that starts at
+// the receiver blocks everything between its highest point and the tangent, so its highest share is 1 from the start.
 
 UPICTURE(rg32ui, surface_image); // surface.comp
 
-// Without a radius a run is believed beyond the frame for this share of what is seen of it. Bent ground that no plane stands for
-// sends its light from wherever the tangent leads.
+// In a march without a radius, the last run goes on beyond the frame for this multiple of the length that is seen of it. Ground that no
+// plane holds gets the second value: it sends light from wherever its tangent leads.
 const float BELIEVED = 0.3;
 #ifdef SUNS
 const float BELIEVED_BENT = BELIEVED;
-const int BACKS = 4; // depths of a back that are weighed: every fourth sector's
+const int BACKS = 4; // depths that are tried for a back: each serves every fourth sector
 #else
 const float BELIEVED_BENT = 30.0;
 #endif
 
-// What is hidden behind a surface sends this share of what the surface does.
+// The hidden back of a surface sends this share of the light that its front sends.
 const float HIDDEN = 0.5;
 
 struct Run {
@@ -38,12 +38,12 @@ struct Walk {
     float squared_radius, pixel;
 };
 
-// Ends a run: all it blocks, as far as its samples have not done so already.
+// Ends a run: blocks what it blocks and its samples have not blocked yet.
 void finish(inout Sectors slots, Side s, Walk k, Run r, bool ends, bool now) {
     float thickness = max(r.width, r.starts && ends ? params.thin : params.thickness);
 #ifdef SUNS
-    // A sharp shadow ends where the back is, which is a guess: every depth up to twice the guess is as likely, so each takes a share of
-    // the sectors. A thickness that the user gave is no guess.
+    // A sharp shadow ends where the back is, and the depth of the back is a guess. Every depth up to twice the guess is taken to be equally
+    // likely, so each gets a share of the sectors. A thickness that the user gave is no guess.
     uvec2 mask = uvec2(0u);
     for (int i = 0; i < BACKS; i++) {
         float depth = thickness * (params.kappa == 0.0 ? 1.0 : float(2 * i + 1) / float(BACKS));
@@ -57,7 +57,7 @@ void finish(inout Sectors slots, Side s, Walk k, Run r, bool ends, bool now) {
     block(slots, now && r.alive && r.low <= r.high ? mask : uvec2(0u), HIDDEN * r.light);
 }
 
-// Takes the sample at distance `at`, `before` the one before.
+// Takes the sample at distance `at`; the sample before lies at `before`.
 void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at, float before) {
     ivec2 q = ivec2(k.line.origin + at * k.line.direction);
     uvec2 stored_texel = FETCH_INSIDE(surface_image, q, uvec4(0u)).xy;
@@ -74,7 +74,7 @@ void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at,
     vec2 w = in_slice(s, to), w_in = w;
     bool counts = true;
 #ifdef LIMITED
-    // What counts of a run is its part inside the ball: where it leaves the ball, up to there.
+    // Only the part of a run inside the ball counts: a run that leaves the ball is clipped there.
     float squared = dot(to, to);
     bool inside = squared < k.squared_radius, leaves = joined && run.last_squared < k.squared_radius;
     w_in = inside ? w : mix(run.last, w, (k.squared_radius - run.last_squared) / (squared - run.last_squared));
@@ -126,7 +126,7 @@ void go_on(inout Sectors slots, inout Run run, Side s, Walk k, float at) {
     run.low = counts ? min(run.low, c) : run.low;
     run.high = counts ? max(run.high, c) : run.high;
 #ifdef BOUNCE
-    // Nothing says that it ends or is hidden there, so it sends as much as what is seen of it; planes often do end.
+    // Nothing says that the run ends or is hidden there, so this part sends the same light as the part that is seen. Planes often do end.
     block(slots, counts && !on_plane ? sectors(run.low, run.high, k.jitter) : uvec2(0u), run.light);
 #endif
 }

@@ -7,7 +7,7 @@ PICTURE(rgba32f, planes_image);
 
 const int CHORDS = 6; // directions tested of the arc that a plane could block
 const float BELIEVED_PLANE = 1.5; // beyond the frame a plane is believed up to here, in half widths of its support
-const float UNEVEN_LEAST = 0.04; // nearer than this share of the room uneven ground is the receiver's own
+const float UNEVEN_LEAST = 0.04; // uneven ground nearer than this share of its room is the receiver's own surface
 
 // True if the recorded surface at a pixel lies in front of depth z, or (with a negative room) at it. A room is a share of the depth,
 // with an orthographic camera a length: twice as far as a plane's own surface may lie off it.
@@ -33,7 +33,7 @@ bool allows(Border b, vec4 equation, float room) {
 // Whether the plane's point X counts; `here`: its place on the support, -1 .. 1.
 bool stands(int plane, vec3 X, vec2 here, bool beyond_frame, float room) {
     vec2 screen = screen_of(X);
-    // Compared before they become integers, which hold no screen coordinate of a point near the eye.
+    // Compared before the conversion to integers: screen coordinates of a point near the eye do not fit into one.
     bool inside = X.z > 0.0 && all(greaterThanEqual(screen, vec2(0.0))) && all(lessThan(screen, vec2(frame_size)));
     ivec2 q = ivec2(inside ? screen : vec2(0.0)), cell = ivec2(clamp(here * 8.0 + 8.0, 0.0, 15.0));
     vec4 rows = FETCH(planes_image, ivec2(PLANE_MASK + (cell.y >> 2), plane));

@@ -13,11 +13,11 @@ struct Side {
     float cos_n, sin_n;
     float below;  // -F(n - pi/2)
     float scale;  // 1 / (cos n + n sin n)
-    float least;  // height below which it is the rounding of the points' coordinates
+    float least;  // a height below this may be rounding of the points' coordinates
     vec2 eye;     // where the eye is, or for an orthographic camera its direction
 };
 
-// Below this sine over the tangent plane nothing counts: rounding and half-float normals live there, and 1e-5 of the weight.
+// Nothing below this sine over the tangent plane counts. Rounding and half-float normals cause such sines, and only 1e-5 of the weight is there.
 const float GRAZING = 0.004;
 
 // The side of a slice towards a direction across V. Also the slice's weight |n_p| (cos n + n sin n) and n.

@@ -76,7 +76,7 @@ float rounding(vec3 point) { return 4.0 * ULP * max(max(abs(point.x), abs(point.
 
 vec3 to_map(vec3 direction) { return direction * camera_from_map; }
 
-// atan(y / x) of y >= 0, any x, to 1e-5 (Abramowitz and Stegun 4.4.49, and its reflections): 0 .. PI.
+// atan(y / x) of y >= 0, any x, to 1e-5 (Abramowitz and Stegun 4.4.47, and its reflections): 0 .. PI.
 float fast_atan(float y, float x) {
     float size = abs(x), a = min(y, size) / max(max(y, size), 1e-30), b = a * a;
     float t = a * (0.9998660 + b * (-0.3302995 + b * (0.1801410 + b * (-0.0851330 + b * 0.0208351))));

@@ -1,8 +1,8 @@
 // The surface recorded at a pixel, seen away from the pixel's centre: its tangent plane.
 
-// Depth, on the ray of `point`, of the surface recorded at pixel q, which is its tangent plane. Taking the pixel centre's depth
-// instead would let every tilted plane shadow itself. A plane so steep that it doubles its depth within the pixel, or ends there,
-// is no evidence: the depth returned is then beyond everything.
+// Depth of the surface recorded at pixel q, on the ray of `point`. The surface is extended by its tangent plane. With the depth at the
+// pixel's centre instead, every tilted plane would shadow itself. If the plane is so steep that its depth doubles within the pixel, or
+// that the ray misses it, the surface says nothing: the depth returned is then beyond everything.
 float recorded_depth(ivec2 q, float depth, vec3 point, vec2 screen) {
     const float NOWHERE = 1e30;
     vec3 n = normal_at(q), centre = position_of(q, depth);
@@ -12,7 +12,7 @@ float recorded_depth(ivec2 q, float depth, vec3 point, vec2 screen) {
 }
 
 struct Recorded {
-    bool exists; // not so outside the frame, behind the eye and where there is no surface
+    bool exists; // false outside the frame, behind the eye and where there is no surface
     ivec2 pixel;
     vec2 screen; // where the point appears
     float depth; // of the surface on the point's ray

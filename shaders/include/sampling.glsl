@@ -1,4 +1,4 @@
-// Directions, tangent frames the per-pixel numbers that turn a fixed pattern into noise a filter can remove, and normals in few bits.
+// Per-pixel numbers that turn a fixed pattern into noise which a filter can remove; tangent frames; normals in 30 bits.
 
 // Two numbers per pixel: the integer hash of Jarzynski and Olano 2020 ("pcg2d").
 vec2 pixel_hash(uvec2 v) {
@@ -12,9 +12,10 @@ vec2 pixel_hash(uvec2 v) {
     return vec2(v >> 8u) * (1.0 / 16777216.0);
 }
 
-// Three numbers per pixel, for the angle of slices, the places of steps and those of sectors: two lattices, of which the window of a
-// small filter holds a stratified set, pairs included, and a hash. The first is Roberts' R2; the second has beside it the least
-// harmonics, of both and of their sums, that pass the filter of `blur`.
+// Three numbers per pixel: for the angle of the slices, the places of the steps and the places of the sectors. The first two are
+// lattices over the picture: in any small window each of them is stratified, and so are their pairs. A filter over that window
+// therefore averages a stratified set. The third number is a hash. The first lattice is Roberts' R2. The second was chosen to go with
+// it: the filter of `blur` passes the least of its harmonics, and of the harmonics of both lattices' sums.
 vec3 pixel_noise(ivec2 p, int seed) {
     uvec2 u = uvec2(p) + uint(seed) * 7919u;
     uvec2 lattices = u.x * uvec2(3242174889u, 2844675811u) + u.y * uvec2(2447445414u, 4020201488u);
@@ -29,7 +30,7 @@ mat3 tangent_frame(vec3 n) {
     return mat3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
 }
 
-// A unit vector in 30 bits, to a thousandth: for tests of connection.
+// A unit vector in 30 bits, exact to a thousandth: enough to tell whether two samples are connected.
 uint pack_normal(vec3 n) {
     uvec3 v = uvec3(clamp(n * 511.5 + 512.0, vec3(0.0), vec3(1023.0)));
     return v.x | v.y << 10u | v.z << 20u;

@@ -12,8 +12,8 @@ struct Sample {
     vec3 surface;   // where its surface meets the ray of the sample
 };
 
-// Direction i of N, cosines stratified: uniform in solid angle (README, correction 3); distance lambda in (0, R], a permutation of
-// the strata of its own so that it does not follow the elevation.
+// Direction i of N. The cosines are stratified, so directions are uniform in solid angle (README, correction 3). The distance lambda in
+// (0, R] has its own permutation of the strata, so that it does not depend on the elevation.
 Sample ssdo_sample(int i, vec3 P, mat3 tangents, vec2 noise) {
     float n = float(params.samples);
     Sample s;

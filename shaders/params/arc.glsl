@@ -2,7 +2,7 @@ PARAMS(arc_params) {
     float radius;        // R, scene units
     float thickness;     // least thickness of runs of unknown width
     float kappa;         // thickness of a run over its width
-    float thin;          // least thickness of a run of known width: 0, or where the user has fixed it the same
+    float thin;          // least thickness of a run of known width: 0, or `thickness` if the user has fixed that
     int slices, steps;   // steps a side
     int seed;
     int planes;          // how many planes are in use

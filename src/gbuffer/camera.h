@@ -39,10 +39,10 @@ typedef struct camera_point {
     double x, y;
 } camera_point;
 
-// Fits a camera to points (Hartley and Zisserman 2004, 7.1): normalised DLT in double, robust to a share of bad points (at least
-// 30
-// %), refined by Gauss-Newton on the reprojection error over f, centre and pose with zero skew. Decides between perspective and
-// orthographic by the residual, the simpler (orthographic) winning ties. Deterministic.
+// Fits a camera to points (Hartley and Zisserman 2004, algorithm 7.1). A normalised DLT in double gives the first estimate; at
+// least 30 % of the points may be bad. Levenberg-Marquardt then minimises the reprojection error over focal length, centre and
+// pose, with zero skew. The residual decides between perspective and orthographic; the simpler camera (orthographic) wins ties.
+// Deterministic.
 // Returns false with ERR_INPUT naming --fov, --ortho and --camera when the points do not determine a camera (coplanar, too few).
 // A file whose points all lie on one plane can still be solved with camera_fit_plane.
 bool camera_fit(const camera_point *points, size_t count, camera *out, error *e);

@@ -11,10 +11,10 @@ typedef struct projection {
     double m[3][4];
 } projection;
 
-// Weighted linear fit: the normalised DLT (perspective; Hartley and Zisserman, Multiple View Geometry, 4.1, with each homogeneous
-// point at unit length, so that points towards the horizon do not swamp the near ones) or the affine least squares
-// (orthographic). Perspective weights refer to squared pixels: `previous` (or NULL) gives the depth that turns the algebraic
-// error into them. False when the points leave it undetermined.
+// Weighted linear fit. Perspective: the normalised DLT (Hartley and Zisserman 2004, 7.1), with each homogeneous point at unit
+// length, so that far points do not outweigh near ones. Orthographic: affine least squares. Perspective weights refer to squared
+// pixels: `previous` (or NULL) gives the depths that turn the algebraic error into pixels. False when the points leave the matrix
+// undetermined.
 bool projection_fit(camera_kind kind, const camera_point *points, const double *weights, size_t count, const projection *previous,
                     projection *out);
 

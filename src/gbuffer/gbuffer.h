@@ -40,7 +40,7 @@ typedef struct gbuffer {
     double pixel_aspect;
     camera camera;
     float *depth;          // planar depth z in camera space, > 0; exactly 0 where there is no surface
-    float *normal;         // 4 a pixel: unit camera-space normal, w = 0; all 0 where there is no surface, except as said below
+    float *normal;         // 4 a pixel: unit camera-space normal, w = 0; all 0 where there is no surface, but see Coverage below
     float *albedo;         // 4 a pixel: r g b as stored (Blender: coverage-premultiplied), w = 0; NULL if absent or not needed
     float *beauty;         // 4 a pixel: r g b, A (1 if absent); NULL
     float *material;       // 2 a pixel: roughness, metallic; NULL
@@ -51,8 +51,8 @@ typedef struct gbuffer {
     bool normals_from_depth, depth_from_position;
     depth_kind depth_kind; // as measured
     bool position_is_camera_space;
-    mat3 normal_from_camera; // to the space of the file's normals; without any to the world, or if that is unknown to camera axes
-                             // with y up and z backwards
+    mat3 normal_from_camera; // to the space of the file's normals. Without normals: to the world; without a known world: to
+                             // camera axes with y up and z backwards
     size_t valid;            // pixels with a surface
     size_t off_ray;          // pixels whose P lay off their own ray and were moved onto it
     double extent;           // robust size of the visible surfaces, scene units: gbuffer_extent in radius.h
@@ -61,27 +61,36 @@ typedef struct gbuffer {
     int evidence_count;
 } gbuffer;
 
-// Normals that all point into their surfaces are turned round. Otherwise they keep the orientation they are stored with, unless
-// they point away from the eye by more than 6 degrees past the silhouette and away from the surface the depths form, or by less
-// but against that surface: the back of a double-sided surface, turned towards the eye. So interpolated and bumped normals may
-// face away slightly (dot(n, ray) <= 0.1) or, agreeing with the surface, more.
+// Normals. If all normals of the file point into their surfaces, all are reversed. Beyond that, a normal is reversed only where
+// it shows the back of a two-sided surface. There it points away from the eye, and the normal that the depths give tells the
+// rest:
+//   dot(n, ray) > 0.1 (more than 6 degrees past the silhouette)   and the two are more than 90 degrees apart; or
+//   0 < dot(n, ray) <= 0.1                                        and they are more than 120 degrees apart.
+// All other normals are kept. So an interpolated or bumped normal may face away a little, or more where it agrees with the
+// depths.
 //
-// Coverage is 1 away from the background. Within one pixel (3 x 3) of it, it is alpha where alpha varies over the picture, else
-// the length of the normal where the renderer averages normals (or, if that is more, the albedo over that of a whole pixel of
-// equal chroma within two pixels), else whether there is a surface. A pixel with coverage > 0 and depth 0 (the renderer's one
-// sample of position missed the surface that the averaged layers show) keeps depth 0, and its normal is the averaged one,
-// renormalised: a later pass fills its layers from the nearest valid neighbour with a similar normal.
+// Coverage is 1, except within one pixel (3 x 3) of the background. There it is the first of these that the file allows:
+//   alpha, if alpha varies over the picture;
+//   the length of the normal, if the renderer averages normals. If there is a whole pixel of equal chroma within two pixels, the
+//   ratio of the albedos is taken where it is larger;
+//   1 where there is a surface, else 0.
+// A pixel can have coverage > 0 and depth 0: the averaged layers show a surface that the renderer's one sample of position
+// missed. It keeps depth 0, and its normal is the averaged one at unit length. A later pass fills its layers from the nearest
+// valid neighbour with a similar normal.
 //
-// Depth is P's camera-space z. Where P was sampled more than 0.02 pixels off its pixel's centre it is instead where the centre's
-// ray meets the plane (P, N), unless that plane is seen at a grazing angle (cosine below 0.01; below 0.1 where the depths
-// form another surface) or the result leaves the range of the 3 x 3 neighbours' depths (perspective: their inverses) by more than
-// half of it. A P further off than 3 pixels (and 10 times
-// the median) is not believed: the depth channel's value counts if it is known what that is, else P's own z if a neighbour's lies
-// within 2 %, else there is no surface. Where P is coarser than the depth channel by a factor of 16 (half floats, a world far
-// from its origin), z comes from that.
+// Depth is P's camera-space z, with three exceptions:
+//   - P lies more than 0.02 pixels off its pixel's centre. Then depth is where the centre's ray meets the plane (P, N). P's own z
+//   is
+//     kept where that plane is seen at a grazing angle (cosine below 0.01; below 0.1 where the depths form another surface), or
+//     where the result leaves the range of the 3 x 3 depths (perspective: of their inverses) by more than half of that range (at
+//     the frame's border: by more than that range).
+//   - P lies more than 3 pixels off, and more than 10 times the camera's median error. Then P is not believed. Depth is the depth
+//     channel's value if its meaning is known; else P's z if a neighbour's depth lies within 2 % of it; else there is no surface.
+//   - P is coarser than the depth channel by a factor of 16 (half floats, a world far from its origin). Then depth is that
+//   channel's.
 //
-// Builds the frame from loaded channels. Validity from position and depth (finite, depth > 0, below the background value, not
-// P = 0 with a background depth), never from |N|. Works in double and subtracts the camera before anything becomes float.
+// Builds the frame from loaded channels. Validity comes from position and depth (finite, depth > 0, below the background value,
+// not P = 0 with a background depth), never from |N|. Works in double and subtracts the camera before anything becomes float.
 // Camera order: flag > fit from P cross-checked with the header > header > one plane with planar depth > ERR_INPUT naming --fov,
 // --ortho, --camera. A lens given by flag takes its pose from P.
 // Positions in camera space (seen from the fit, unless the convention promises world space) leave has_world false.
@@ -92,7 +101,7 @@ bool gbuffer_build(const exrio_file *file, const resolution *r, const gbuffer_op
                    error *e);
 void gbuffer_free(gbuffer *g);
 
-// The first role of which it is doubtful what it means; NULL when there is none.
+// The first role whose meaning is doubtful; NULL when there is none.
 const char *gbuffer_doubt(const gbuffer *g);
 
 // Camera-space position of pixel (x, y), from its depth; z = 0 where there is no surface.

@@ -8,8 +8,8 @@
 
 int arc_round_slices(int round) { return ROUND_SLICES << round; }
 
-// A few steps find whether there is anything at all. Where sampling goes on, what 16 steps miss would outlast the noise (rms of
-// their bias on the samples .006 to .014, of 32 steps .003).
+// The first round takes few steps: enough to find out whether a tile has any noise. Later rounds take more, because what few
+// steps miss would be larger than the noise that is left (tests/bench/RESULTS.md, Sampling).
 int arc_round_steps(int round) { return round == 0 ? ROUND_STEPS : 2 * ROUND_STEPS; }
 
 static int samples_after(int round)
@@ -64,7 +64,7 @@ static bool march(work *w, const char *what, int round, error *e)
     return pass_run(c, &call, e);
 }
 
-// Tiles beside active ones, too: the second direction reads what the first left there.
+// Also marks the tiles beside active ones: the second direction reads what the first direction stores there.
 static void grow(work *w)
 {
     const gpu_tiles *t = &w->tiles;
@@ -103,7 +103,7 @@ static bool measure(work *w, error *e)
     return true;
 }
 
-// Takes the tiles out that have come below the error, and says whether any is left.
+// Removes the tiles whose error is low enough. Returns whether any tile is left.
 static bool settle(work *w, int round)
 {
     adaptive_sampling *r = &w->c->adaptive;
@@ -139,8 +139,8 @@ static bool make_room(work *w, error *e)
            gpu_buffer_make(c->g, &w->totals, NULL, count * sizeof *w->read, "the tiles' errors", e);
 }
 
-// The denoised picture of all tiles, and the standard error of each pixel: a mean over its neighbours, for one change is one
-// draw.
+// Stores the denoised picture of all tiles, and the standard error of each pixel. That is a mean over its neighbours, because the
+// change of a single pixel is a single random draw.
 static bool conclude(work *w, error *e)
 {
     pass_context *c = w->c;

@@ -7,15 +7,16 @@
 
 static const float HUGE_LENGTH = 1e15f; // its square is still a float
 static const float KAPPA = 1.0f;        // a run is as thick as it is wide
-// How far a run may turn between two steps: the tangent of 52 degrees, and within the radius, where many steps are short, of 65.
+// How far a run may turn between two steps: the tangent of 52 degrees, or of 65 degrees where a march within the radius has many
+// short steps.
 static const float TOLERANCE = 1.3f, SHORT_STEP_TOLERANCE = 2.1f;
 
-// From here on half the slices are a set that resembles the whole, and what the other half changed tells of the noise.
+// With this many slices or more, half of them resemble the whole set, so the change by the other half measures the noise.
 enum { LEAST_FOR_HALF_DIFFERENCE = 4 };
 
-// A filter over the neighbours averages slices but cannot find what steps have missed, so small budgets go into steps: 1 x 8, 1 x
-// 16 and 2 x 16 have lower errors at the same time than 2 x 4, 2 x 8 and 4 x 8. Large ones, which no filter follows, stay near
-// twice as many steps as slices.
+// The filter averages the slices of neighbouring pixels, but it cannot find what the steps have missed. So small budgets go into
+// steps: 1 x 8, 1 x 16 and 2 x 16 (slices x steps a side). Large budgets need no filter and take about twice as many steps as
+// slices.
 void arc_grid(int samples, int *slices, int *steps)
 {
     double most = fmin(samples / 32.0, sqrt(samples / 4.0));
@@ -68,7 +69,7 @@ arc_params arc_unlimited_params_of(const pass_context *c)
 {
     arc_params p = arc_params_of(c);
     p.radius = HUGE_LENGTH;
-    // Uneven ground stands in for light only: what it hides within the radius, runs know better.
+    // Uneven ground stands in for light only. Within the radius runs find better what it hides.
     p.planes = c->planes.count + c->planes.uneven;
     p.tolerance = TOLERANCE;
     return p;
@@ -131,7 +132,7 @@ static bool make_surface(pass_context *c, error *e)
 
 bool arc_make_inputs(pass_context *c, error *e) { return make_planes(c, e) && make_surface(c, e); }
 
-// Bent normals after rounds have found the occlusion: as many slices, whose own occlusion nobody needs.
+// Bent normals after the rounds: as many slices as each tile came to. The occlusion that this march makes is not used.
 static bool run_bent(pass_context *c, const char *what, error *e)
 {
     const arc_params params = arc_params_of_grid(c, ROUND_SLICES, ROUND_STEPS);
@@ -188,11 +189,11 @@ static bool light_planes(pass_context *c, const arc_params *params, const gpu_im
     return c->planes.count + c->planes.uneven == 0 || pass_run(c, &call, e);
 }
 
-// Light comes from any distance, so its march has no radius. It serves the sky's light through what is open and the bounce from
-// what is not: both at once where nothing of the one goes into the other.
+// Light comes from any distance, so this march has no radius. It makes the sky's light, through the open sectors, and the bounce,
+// from the blocked ones. One march makes both, unless the bounce needs the filtered sky light.
 static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
 {
-    // A picture the renderer lit is what surfaces send; our own radiance still needs their albedo.
+    // A beauty is the light that surfaces send. Our own radiance is light before albedo.
     bool exitant = !c->set.relight, visibility = sky && c->want_visibility;
     const gpu_image *sender = exitant ? &c->image[IMAGE_BEAUTY] : &c->image[IMAGE_RADIANCE],
                     *albedo = exitant ? &c->image[IMAGE_BEAUTY] : &c->image[IMAGE_ALBEDO];

@@ -1,8 +1,8 @@
 // A uniform grid over triangles, as the shader trace_grid.comp walks it.
 //
-// Scenes often stand on a ground that reaches the horizon, or have something small far away, and one grid around all of that
-// would have everything of interest in one cell. So there may be several: one around the crowd, the next around the crowd of
-// what is left, and so on; a ray walks them all.
+// A scene often stands on a ground that reaches the horizon, or has something small far away. One grid around all of it would
+// hold everything of interest in one cell. So there may be several grids: one around most of the triangles (the crowd), the next
+// around most of the rest, and so on. A ray walks all of them.
 #ifndef SSDO_PASSES_GRID_H
 #define SSDO_PASSES_GRID_H
 

@@ -48,14 +48,14 @@ typedef enum image_resampling {
     AS_NOTHING, // it is made at full size, if at all
     AS_SCALAR,
     AS_COLOUR,
-    AS_OPEN_LIGHT, // as a colour; what is lost of a hemisphere is lit like an open one
+    AS_OPEN_LIGHT, // as a colour; a pixel that finds no surface gets the light of an open hemisphere
 } image_resampling;
 
 // What happens to it later, bits.
 enum {
-    IMAGE_FILLED = 1 << 0,  // at edges: in pixels that a surface covers in part, and none is recorded
+    IMAGE_FILLED = 1 << 0,  // by pass_edges: in pixels that a surface covers in part but that have no position
     IMAGE_BLOCKED = 1 << 1, // by proxies
-    IMAGE_VECTOR = 1 << 2,  // both, in a run of its own: the SH vector has images enough for one
+    IMAGE_VECTOR = 1 << 2,  // both, but in a run of its own: the images of the SH vector fill one program
 };
 
 // What a sample can be. NaN and infinity none can.

@@ -36,8 +36,8 @@ typedef struct pass_settings {
     double thickness;     // scene units; INFINITY allowed
     bool thickness_fixed; // asked for by the user: no method may find a better one
     int samples;
-    double error;      // > 0: standard error of the occlusion to come below, in rounds
-    int most_samples;  // of those rounds
+    double error;      // > 0: sample in rounds until the standard error of the occlusion is below this
+    int most_samples;  // limit for those rounds
     int blur;          // pixels, 0 none
     int sh_bands;      // s3ho: highest l, 2 (0 too) or 3
     double sh_sigma;   // s3ho: radians of the low-pass
@@ -108,8 +108,8 @@ typedef struct pass_context {
     int width, height;
     gpu_image image[IMAGE_COUNT]; // id 0: the frame has none, or its pass has not run
 
-    bool suns_apart;  // radiance and visibility lack the suns of `sunless`, which bear no filter, until pass_suns adds them
-    bool denoised;    // the occlusion is, and bears no blur
+    bool suns_apart;  // radiance and visibility lack the suns of `sunless`: pass_suns adds them after the filter
+    bool denoised;    // the occlusion has been filtered by its own noise, or by the rounds
     plane_set planes; // found by the pass that uses them
     adaptive_sampling adaptive;
 
@@ -138,8 +138,8 @@ bool pass_upload_environment(gpu *g, const environment *env, gpu_image *out, err
 
 enum { PASS_MOST_READS = 12, PASS_MOST_WRITES = 9, PASS_MOST_BUFFERS = 8 };
 
-// A picture or a buffer by the name it has in the shader. Lists of them end at a NULL name. Names that the variant does not use
-// may be there; one that it uses and nobody gave is an error.
+// A picture or a buffer by its name in the shader. A NULL name ends a list. A list may hold names that the variant does not use.
+// It is an error if a name that the variant uses is missing.
 typedef struct pass_picture {
     const char *name;
     const gpu_image *image;
@@ -154,7 +154,7 @@ typedef struct pass_call {
     const char *program;          // shaders/<program>.comp
     const char *variant;          // words of passes/variants.h; NULL: none
     const char *label;            // in the report; NULL: the program's name. Lives as long as the context
-    bool untimed;                 // it is part of something that is timed as a whole
+    bool untimed;                 // the caller times it together with other runs
     const gpu_tiles *tiles;       // NULL: the frame's
     bool everywhere;              // tiles without a surface too
     bool exact;                   // never drawn: drawing may flush denormals
@@ -170,11 +170,11 @@ typedef struct pass_call {
 // The two members of a parameter block.
 #define PASS_PARAMS(block) .params = &(block), .params_size = sizeof(block)
 
-// Runs it over the tiles: dispatched, or drawn where the shader can be and the device does that faster. What follows finds the
-// result.
+// Runs the shader over the tiles. It is dispatched; or drawn, if the shader allows that and the device draws faster. Later calls
+// see its result.
 bool pass_run(pass_context *c, const pass_call *call, error *e);
 
-// Times of what runs several shaders: pass_clock_stop adds what has passed since to the timings.
+// Times a pass that runs several shaders: pass_clock_stop adds the time since pass_clock to the timings.
 pass_timing pass_clock(const pass_context *c, const char *name);
 void pass_clock_stop(pass_context *c, pass_timing since);
 
@@ -183,15 +183,16 @@ bool pass_make_image(pass_context *c, image_id id, error *e);
 // The same for one that is a pass's own, cleared to `value` in every component; the pass frees it.
 bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, error *e);
 
-// Adds what the frame has of the images of `group` (IMAGE_FILLED ...) to a call's words and to the end of its pictures; false if
-// it has none.
+// Adds the images of `group` (IMAGE_FILLED ...) that the frame has to a call's words and to the end of its pictures. False if the
+// frame has none.
 bool pass_add_group(const pass_context *c, unsigned group, variant *words, pass_picture writes[PASS_MOST_WRITES + 1]);
 
 // ---- the passes that serve every method (passes/method.h), one file and one shader each
 
 bool pass_split_suns(pass_context *c, error *e); // takes the suns out of the environment, once a batch
 bool pass_suns(pass_context *c, error *e);       // radiance, visibility: in place, if their suns are apart
-// The occlusion by a filter that knows its noise from `half_difference`; other pictures by one that does not.
+// pass_denoise filters the occlusion: `half_difference` tells it the noise. pass_blur filters other pictures, whose noise is
+// unknown.
 typedef struct pass_denoising {
     const gpu_image *moments; // between the directions, rgba32f
     const gpu_image *result;
@@ -203,10 +204,11 @@ bool pass_denoise_down(pass_context *c, const pass_denoising *d, error *e);
 bool pass_denoise(pass_context *c, error *e); // occlusion: in place
 // In place, over `radius` pixels; NULL = none.
 bool pass_blur(pass_context *c, int radius, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e);
-// What the method and the bounce made of a frame of half the size (gbuffer/half.h), brought to the size of `c`: the images of
-// `which` that `small` has and `c` has not.
+// Brings layers of a frame of half the size (gbuffer/half.h) to the size of `c`: the images of `which` that `small` has and `c`
+// lacks.
 bool pass_upsample(pass_context *c, const pass_context *small, image_set which, error *e);
-// Unseen spheres: they block before the looks, and add their bounce after the method's. Both do nothing without spheres.
+// Spheres that the camera does not see. They block before pass_tone runs and add their bounce after the method's own bounce. Both
+// passes do nothing without spheres.
 bool pass_proxies(pass_context *c, error *e);                 // occlusion, visibility, radiance, bent, sh: in place
 bool pass_proxies_bounce(pass_context *c, error *e);          // indirect: in place
 bool pass_tone(pass_context *c, gpu_image *scalar, error *e); // scale and contrast, in place
@@ -215,7 +217,7 @@ bool pass_edges(pass_context *c, error *e);                   // fills the layer
 bool pass_specular(pass_context *c, error *e);                // material, albedo -> specular, diffuse_share
 bool pass_composite(pass_context *c, error *e);               // layers -> composite
 
-// Those that make a layer which nothing else needs.
+// Passes whose layer no other pass needs.
 #define IMAGE(id, ...)
 #define LAYER(id, ...)
 #define PASS_LAYER(id, pass, ...) bool pass(pass_context *c, error *e);

@@ -8,23 +8,24 @@
 
 enum { SAMPLES = 4096, HYPOTHESES = 64, SCORED = 1024, REFINEMENTS = 2, TURNS = 18 };
 
-// Of what lies on a plane, and on uneven ground: distance from it, share of the depth; cosine of the angle between the normals (8
-// and 37 degrees); and how many there must be, share of the surfaces.
+// A sample lies on a plane if it is nearer to it than DISTANCE (a share of its depth) and if the cosine between the normals is at
+// least COSINE (8 degrees). A plane must hold at least the share SMALLEST of all surfaces. Uneven ground has limits of its own
+// (37 degrees).
 static const double DISTANCE = 0.002, UNEVEN_DISTANCE = 0.05;
 static const double COSINE = 0.9902681, UNEVEN_COSINE = 0.8;
 static const double SMALLEST = 0.02, UNEVEN_SMALLEST = 0.2;
-static const double CONTRADICTED = 3.0; // samples seen through a plane over samples on it: more refuse it
+static const double CONTRADICTED = 3.0; // samples seen through a plane, over samples on it; above this the plane is refused
 
 typedef struct surface {
     vec3 p, n;
-    double size; // that distances from a plane are measured in: its depth, with an orthographic camera the frame's extent
+    double size; // unit of its distance from a plane: its depth; with an orthographic camera the frame's extent
 } surface;
 
 typedef struct finder {
-    surface *s; // those that no plane has taken yet come first
+    surface *s; // the `count` samples that no plane has taken come first
     int count, total;
     bool orthographic;
-    double distance, cosine; // of what lies on a plane
+    double distance, cosine; // limits for a sample on a plane
 } finder;
 
 static vec3 normal_of(const gbuffer *gb, size_t i)
@@ -33,7 +34,7 @@ static vec3 normal_of(const gbuffer *gb, size_t i)
     return v3((double)n[0], (double)n[1], (double)n[2]);
 }
 
-// SAMPLES surfaces or up to twice as many, on a square grid over the whole frame.
+// Takes SAMPLES surfaces, or up to twice as many, on a square grid over the whole frame.
 static void take_samples(const gbuffer *gb, finder *f)
 {
     int step = (int)sqrt((double)gb->width * gb->height / SAMPLES);
@@ -145,7 +146,7 @@ static void support(const finder *f, plane *p)
     }
 }
 
-// Moves what the plane holds behind the remaining samples. Returns how many.
+// Moves the samples that the plane holds behind the remaining ones. Returns their number.
 static int take(finder *f, const plane *p)
 {
     int kept = 0, before = f->count;
@@ -173,8 +174,9 @@ static int cell_of(const plane *p, int axis, vec3 at)
     return fabs(x) <= 1.0 ? (int)fmin((x + 1.0) * 0.5 * PLANE_CELLS, PLANE_CELLS - 1) : -1;
 }
 
-// Samples seen through the plane inside its support tell where it is not, those on it where it is. Uneven ground that happens to
-// hold many samples near one plane shows many more beyond it. Returns how many were seen through.
+// Marks the cells of the support where the plane may be. A sample on the plane speaks for its cell. A sample that is seen through
+// the plane speaks against its cell. Returns the number of samples seen through: it is large where uneven ground merely has many
+// samples near one plane.
 static int fill_cells(const finder *f, plane *p)
 {
     int balance[PLANE_CELLS][PLANE_CELLS] = {{0}}, through = 0;
@@ -193,7 +195,7 @@ static int fill_cells(const finder *f, plane *p)
     return through;
 }
 
-// The next plane among the samples that none has taken. Returns how many it takes; 0: too few.
+// Finds the next plane among the samples that no plane has taken. Returns how many it takes; 0 if they are too few.
 static int find_plane(finder *f, double smallest, plane *p)
 {
     if (f->count <= smallest * f->total || f->count < 8) return 0;
@@ -221,7 +223,7 @@ bool planes_find(const gbuffer *gb, plane_set *out, error *e)
         n = find_plane(&f, SMALLEST, &p);
         if (n > 0 && fill_cells(&f, &p) <= CONTRADICTED * n) out->planes[out->count++] = p;
     }
-    // What they leave may be ground that no plane holds; what refused ones have taken belongs to it.
+    // Uneven ground is looked for among all samples that no accepted plane holds. Samples of refused planes are among them.
     f.count = f.total;
     for (int i = 0; i < out->count; i++) take(&f, &out->planes[i]);
     f.distance = UNEVEN_DISTANCE;

@@ -12,13 +12,13 @@ enum { PLANES_MAX = 12, PLANE_CELLS = 16 };
 
 // normal . x = offset in camera space; the normal is unit and faces the eye. The support is the rectangle of least area that
 // holds all samples: |axis[i] . x - centre[i]| <= half[i], the axes unit and perpendicular to the normal. It is divided into
-// PLANE_CELLS x PLANE_CELLS cells; bit x of row y says that the picture does not show the plane to be absent there (a hole, the
-// corner beside a disc).
+// PLANE_CELLS x PLANE_CELLS cells. Bit x of row y is clear where the picture shows that the plane is absent (a hole, the corner
+// beside a disc).
 typedef struct plane {
     vec3 normal, axis[2];
     double offset, centre[2], half[2];
     double share; // of the frame's surfaces
-    double room;  // how far off its plane a surface may lie: times its depth, with an orthographic camera a length
+    double room;  // how far off the plane a surface may lie: a share of its depth; with an orthographic camera a length
     unsigned short cells[PLANE_CELLS];
 } plane;
 
@@ -29,8 +29,9 @@ typedef struct plane_set {
     double samples;    // surface samples that were looked at
 } plane_set;
 
-// Largest first, each holding at least 2 % of the surfaces. Of what they leave, uneven ground: what lies within 5 % of its depth
-// of one plane and within 37 degrees of its normal, if that is a fifth of the surfaces.
+// Finds the planes, largest first. Each holds at least 2 % of the surfaces. Then looks for uneven ground among the other
+// surfaces: those within 5 % of their depth of one plane and within 37 degrees of its normal. They must be at least a fifth of
+// all surfaces.
 bool planes_find(const gbuffer *gb, plane_set *out, error *e);
 
 #endif

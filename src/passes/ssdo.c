@@ -38,7 +38,7 @@ static bool run(pass_context *c, error *e)
 
 static bool run_bounce(pass_context *c, error *e)
 {
-    // A picture the renderer lit is what surfaces send; our own radiance still needs their albedo.
+    // A beauty is the light that surfaces send. Our own radiance is light before albedo.
     bool exitant = !c->set.relight;
     ssdo_params params = params_of(c);
     params.exitant = exitant;

@@ -4,8 +4,8 @@
 #include "base/threads.h"
 #include "passes/arc.h"
 
-// The box of the frame's surfaces, in the axes of the environment's map: scenes stand upright in it, so it is tight above a
-// ground.
+// The box of the frame's surfaces, in the axes of the environment's map. Scenes stand upright in those axes, so the box is tight
+// above a ground.
 typedef struct box_job {
     const gbuffer *gb;
     mat3 map_from_camera;
@@ -14,7 +14,8 @@ typedef struct box_job {
 
 enum { BANDS = 64 };
 
-// A sharp shadow shows where a back is: on average half as deep as wide errs least (shaders/include/arc_march.glsl).
+// A sharp shadow shows where a back is. The best guess of its depth is half the width of the surface
+// (shaders/include/arc_march.glsl).
 static const float SUN_KAPPA = 0.5f;
 
 static bool bound_band(void *context, size_t band, int worker)

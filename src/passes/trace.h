@@ -1,5 +1,5 @@
-// The mesh of the ray-traced reference, ready to be traced: by Embree on the CPU, or by a uniform grid on the GPU. Rays and hits
-// live in GPU buffers either way, so that everything else is the same code and both back ends get the same rays.
+// The mesh of the ray-traced reference, ready to be traced by Embree on the CPU or by a uniform grid on the GPU. In both cases
+// rays and hits are in GPU buffers. So all other code is the same, and both back ends get the same rays.
 #ifndef SSDO_PASSES_TRACE_H
 #define SSDO_PASSES_TRACE_H
 

@@ -6,7 +6,7 @@
 #include "passes/method.h"
 #include "passes/params.h"
 
-// A surface seen at less than 3 degrees is taken to be seen at 3: rounding of the normal would else decide its area.
+// A surface seen at less than 3 degrees is treated as seen at 3. Otherwise rounding of the normal would decide its area.
 static const double GRAZING = 0.05;
 
 static double pixel_area(const gbuffer *gb, size_t i)
@@ -19,9 +19,8 @@ static double pixel_area(const gbuffer *gb, size_t i)
     return z * z / (c->fx * c->fy * fmax(fabs(v3_dot(n, ray)), GRAZING * v3_length(ray)));
 }
 
-// Surfaces far behind the rest of the scene hold most of its area (a ground that reaches the horizon), and none of its light
-// reaches anything: their share of the lights falls with the square of the distance. What they send is kept, by fewer and larger
-// discs.
+// A ground that reaches the horizon can hold most of the scene's area, but its far part lights nothing in the picture. So the
+// density of lights falls with the square of the distance. Far lights are fewer and larger, and send the same light in all.
 static double nearness(const gbuffer *gb, size_t i)
 {
     double depths = gb->extent > 0.0 ? (double)gb->depth[i] / gb->extent : 0.0;
