@@ -88,6 +88,7 @@ help:
 	@echo 'make bench-frame   cost of a whole frame beside copying its file (bench-frame-readme: into tests/bench/RESULTS.md)'
 	@echo 'make dist     an archive that runs where it is unpacked; make check-dist: in fresh Debian roots, as root'
 	@echo 'make dist-oldest OPENEXR=folder IMATH=folder   the same built in Debian 11, from sources of OpenEXR 3 and Imath, as root'
+	@echo 'make deb      Debian packages of the committed source: ssdo-filter, libssdo0, libssdo-dev'
 	@echo 'make check-systems SYSTEMS="bookworm trixie"   both commands of README in fresh Debian roots, as root; an hour'
 	@echo 'make check-openexr VERSIONS="folder ..."   tests against other versions of OpenEXR, and which reads which compression'
 	@echo 'make all | lint | format | install PREFIX= DESTDIR= | uninstall | clean'
@@ -419,7 +420,7 @@ install: all $(BUILD)/completion.bash $(BUILD)/completion.zsh $(BUILD)/ssdo-filt
 	install -m 644 $(BUILD)/lib/$(SONAME) $(BUILD)/lib/libssdo.a $(DESTDIR)$(SODIR)
 	ln -sf $(SONAME) $(DESTDIR)$(SODIR)/libssdo.so
 	install -m 644 src/ssdo.h $(DESTDIR)$(INCDIR)
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@PACKAGES@|$(PKGS)|' src/library/ssdo.pc.in >$(DESTDIR)$(PCDIR)/ssdo.pc
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(SODIR:$(PREFIX)/%=$${prefix}/%)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@PACKAGES@|$(PKGS)|' src/library/ssdo.pc.in >$(DESTDIR)$(PCDIR)/ssdo.pc
 	install -m 644 README.md $(DESTDIR)$(DOCDIR)
 	install -m 644 $(FARM) $(DESTDIR)$(DOCDIR)/examples
 
@@ -451,6 +452,14 @@ check-systems:
 check-openexr: deps-check
 	@sh tests/deps.sh cmake
 	@sh tests/systems/openexr.sh $(VERSIONS)
+
+# Debian packages of the committed source (tests/deb/make.sh).
+DEPS_DEB  := debhelper dpkg-dev lintian
+.PHONY: deb
+deb:
+	@sh tests/deps.sh $(DEPS_BUILD) $(DEPS_DEB)
+	@mkdir -p $(BUILD)
+	@sh tests/deb/make.sh $(BUILD) $(VERSION)
 
 clean: ; rm -rf $(BUILD) demo
 
