@@ -17,7 +17,8 @@ struct Side {
     vec2 eye;     // where the eye is, or for an orthographic camera its direction
 };
 
-// Nothing below this sine over the tangent plane counts. Rounding and half-float normals cause such sines, and only 1e-5 of the weight is there.
+// Nothing below this sine over the tangent plane counts. Rounding and half-float normals cause such sines, and only 1e-5 of the weight
+// is there.
 const float GRAZING = 0.004;
 
 // The side of a slice towards a direction across V. Also the slice's weight |n_p| (cos n + n sin n) and n.

@@ -1,10 +1,9 @@
-// What the shaders of the ray-traced reference share (src/passes/raytrace.c has the order they run in): a list of pixels that is
-// worked through in batches, rays, what they hit, and what they bring if they hit nothing.
+// Shared by the shaders of the ray-traced reference (src/passes/raytrace.c runs them): the list of pixels, which is worked through in
+// batches; the rays; their hits; and the light that a ray brings if it hits nothing.
 //
 // A ray starts at a point of the mesh. The point is lifted off the surface by the largest rounding error there, so that the ray never
 // hits the surface it leaves. A direction below the surface has no ray: it is blocked.
-// Mesh space is the mesh file's axes and unit about an origin
-// near its middle; directions are chosen in camera space.
+// Mesh space has the mesh file's axes and unit, and its origin near the middle of the mesh. Directions are chosen in camera space.
 #include "include/rays.glsl"
 
 #include "params/trace.glsl"

@@ -65,16 +65,16 @@ typedef struct build {
     bool depth_measured;   // Z is known to be planar or radial depth
     bool depth_wins;       // z comes from Z
     double depth_offset;   // orthographic: z = Z + offset
-    double far_pixels;     // P further than this from its pixel is not believed
+    double far_pixels;     // a P further than this from its pixel is not believed
     unsigned filtered;     // bits of the roles whose pixels are means over the pixel (damage.c)
     bool lateral;          // P is fine enough to tell where in its pixel it was sampled
     double depth_rounding; // of raw, in scene units, and the depth it is meant at: medians
     double typical_depth;
 
     bool has_rotation;    // the camera's world_from_camera is that of a flag or of the positions
-    bool has_header_pose; // else: the header's, which nothing has confirmed yet
+    bool has_header_pose; // else: world_from_camera is the header's, not confirmed yet
     header_pose pose;
-    bool rotation_from_normals; // else: they know the camera's rotation, and nobody its place
+    bool rotation_from_normals; // else: the normals gave the camera's rotation; its place is unknown
     mat3 world_from_camera;     // has_header_pose or rotation_from_normals: the camera's in the end
     vec3 eye;
     mat3 normal_to_camera; // takes the file's normals to camera space
@@ -135,8 +135,8 @@ bool choose_camera(build *b);
 // orthographic.c: the direction that an orthographic fit leaves open.
 bool orthographic_settle(build *b);
 
-// depth_hypotheses.c: the depth's sign and the kind that an option says; then, with the camera known, the kind of a depth that no
-// positions explain, which may find the surfaces anew. An error where depth cannot be read without a range.
+// depth_hypotheses.c. First the depth's sign, and its kind if an option gives it. Then, with the camera known, the kind of a
+// depth without positions; this may classify the surfaces again. An error where depth cannot be read without a range.
 bool depth_open(build *b);
 bool depth_settle(build *b);
 

@@ -5,12 +5,12 @@
 #include "gbuffer/camera.h"
 #include "gbuffer/conventions.h"
 
-// m: worldToNDC as stored (row vectors). Renderers differ: 0..1 with y down, the standard's; -1..1 with
-// y up; w = -z; transposed; mirrored. With points, the reading that puts them at their pixels is taken, and none is if the median
-// error stays above half a pixel. Without points only the first two readings are tried, and the one whose principal point lies
-// nearest the centre of the display window is taken, if that is within a quarter of its width. Its lens can be relied on then;
-// its pose only if it makes a right-handed world, else has_world is false: a negated and a mirrored matrix look alike without
-// points.
+// m: worldToNDC as stored (row vectors). Renderers write it in different ways: 0..1 with y down (the standard's); -1..1 with y
+// up; w = -z; transposed; mirrored. With points, the reading that puts them at their pixels is taken; none is taken if the median
+// error stays above half a pixel. Without points, only the first two readings are tried. The one whose principal point lies
+// nearest the centre of the display window is taken, if that distance is at most a quarter of the window's width. Its lens is
+// then reliable. Its pose is reliable only if it makes a right-handed world, because without points a negated and a mirrored
+// matrix look alike; otherwise has_world is false.
 bool camera_from_ndc(double m[4][4], box2 data, box2 display, const camera_point *points, size_t count, camera *out);
 
 // An attribute's number, finite: one, or a text that begins with one.

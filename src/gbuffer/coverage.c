@@ -29,8 +29,9 @@ static bool near_background(const build *b, int x, int y)
     return false;
 }
 
-// Where the renderer averages colours too, a pixel's albedo over that of a whole pixel of its material beside it is its coverage:
-// it knows what the length of the normal does not when two faces meet in the pixel. 0 where no such pixel is found.
+// Where the renderer averages colours too, coverage is also a ratio: the pixel's albedo over the albedo of a whole pixel of the
+// same material beside it. Unlike the length of the normal, it stays right where two faces meet in the pixel. 0 where there is no
+// such pixel.
 static double coverage_of_albedo(const build *b, int x, int y)
 {
     enum { REACH = 2 };
@@ -53,7 +54,7 @@ static double coverage_of_albedo(const build *b, int x, int y)
     return k;
 }
 
-// Away from the background alpha is the material's (glass), and |N| a bump's: neither is coverage.
+// Away from the background neither is coverage: alpha there is the material's (glass), and a bump map changes |N|.
 static void coverage_row(build *b, int y)
 {
     for (int x = 0; x < b->g->width; x++) {

@@ -1,4 +1,4 @@
-// Warnings about geometry that was stored so that it no longer is the surface's: filtered, or compressed as a colour.
+// Warnings about geometry that no longer describes the surface, because it was filtered or compressed as a colour.
 #include <openexr_attr.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,8 +19,8 @@ typedef struct edges {
 
 static bool filtered(const edges *e) { return e->all >= LEAST_EDGES && (double)e->between > most_between * (double)e->all; }
 
-// Depths of a row, 0 where there is no surface. An edge: on each side of a pixel, `reach` away, two pixels that agree among
-// themselves and differ from the other side; the pixel between belongs to one side if it was sampled at a point.
+// Depths of a row, 0 where there is no surface. There is an edge at a pixel if on each side, `reach` away, two pixels agree with
+// each other and differ from those of the other side. If the pixel was sampled at a point, it belongs to one of the sides.
 static void count_depth(const double *z, int n, int reach, edges *out)
 {
     for (int x = reach + 1; x < n - reach - 1; x++) {

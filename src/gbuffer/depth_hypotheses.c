@@ -1,7 +1,7 @@
-// What a depth means that no positions explain. Two witnesses tell its kinds apart, neither of which needs the scale:
-// - the file's normals, which fit the surfaces of the right kind only;
-// - planes, on which 1 / z is linear across a perspective picture (z across an orthographic one) in the right kind only.
-// Where neither tells, the renderer's kind counts, unless all values lie within 0..1 and so can hardly be distances.
+// Finds the kind of a depth where the file has no positions. Two kinds of evidence decide; neither needs the scale:
+// - the file's normals: they fit the surfaces only if the depth is read as the right kind;
+// - planes: 1 / z is linear across a perspective picture of a plane (z across an orthographic one), again only for the right
+// kind. If neither decides, the renderer's usual kind is taken, unless all values lie within 0..1 and so can hardly be distances.
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -162,7 +162,7 @@ static int list_trials(const build *b, const values *s, trial list[MOST], bool *
     return n;
 }
 
-// By the normals where they know one kind's surfaces, else by planes, else the renderer's.
+// The normals decide if they fit one kind's surfaces; else the planes; else the renderer's usual kind.
 static int choose(const trial *list, int n, bool *confirmed)
 {
     int best = 0;
@@ -204,7 +204,7 @@ static void doubt(build *b, const char *why)
              why, b->g->depth_verdict.reading);
 }
 
-// Where the background is 0, as 1 / z has it, and no witness speaks, nearer may be larger.
+// A background of 0 suggests 1 / z, where nearer surfaces have larger values. Asked only if no other evidence decides.
 static void question_direction(build *b, const values *s, const trial *best, bool confirmed)
 {
     bool open = 100 * s->zero > s->looked_at && s->beyond > 0 && s->negative == 0;

@@ -1,10 +1,10 @@
-// The surfaces that the meaning of a pass is tested on: normals of the shape itself at smooth pixels, spread over the frame and
-// over the directions that the surfaces face. Internal to the room.
+// Sample surfaces that tell the meaning of a pass: normals of the shape itself at smooth pixels, spread over the frame and over
+// the directions that the surfaces face. Internal to the room.
 //
-// A pixel is smooth if its neighbours on either side form the same plane within 18 degrees and it is not seen edge-on; a
-// silhouette, a crease and a leaf of two pixels are not. Neighbours lie farther apart where the values are rounded to half.
-// If n samples face the same way, each weighs 1 / sqrt(n) and all of them sqrt(n): a floor that fills most of the picture does
-// not outvote the other surfaces.
+// A pixel is smooth if it is not seen edge-on and the planes through its neighbours on either side agree within 18 degrees. A
+// silhouette, a crease and a leaf of two pixels are not smooth. Where values are rounded to half, neighbours further away are
+// taken. If n samples face the same way, each weighs 1 / sqrt(n) and all of them sqrt(n): a floor that fills most of the picture
+// does not outvote the other surfaces.
 #ifndef SSDO_GBUFFER_EVIDENCE_H
 #define SSDO_GBUFFER_EVIDENCE_H
 

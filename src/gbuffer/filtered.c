@@ -1,9 +1,10 @@
-// Passes that went through the picture's reconstruction filter: at an edge their pixels are means of several surfaces, or of a
-// surface and the background's zeros, or, by negative lobes, lie beyond either. Such a pixel is given one surface again.
+// Mends passes that went through the picture's reconstruction filter. At an edge their pixels are means of several surfaces, or
+// of a surface and the background's zeros; a filter with negative lobes leaves values beyond either. Such a pixel is given one
+// surface again.
 //
-// Each mixed pixel is explained as a mean of two of the sides around it, each known from a clean pixel. If the filter is
-// symmetric, the centre belongs to the side that has the larger share; the nearer side's normal, which turns at round outlines,
-// is what remains of the stored one without the farther side's share.
+// Each mixed pixel is explained as a mean of two of the sides around it. A clean pixel tells what each side is. With a symmetric
+// filter, the pixel's centre belongs to the side with the larger share. The nearer side's normal turns at round outlines, so it
+// is computed: the stored normal minus the farther side's share.
 #include <stdlib.h>
 
 #include "base/mem.h"
@@ -72,9 +73,9 @@ static vec3 place_of(const repair *r, int x, int y)
     return r->b->has_position ? s->p : build_point(&r->b->g->camera, x, y, depth_of(r, s));
 }
 
-// Whether the pixel and its neighbour lie on one smooth surface. With normals: their connection is tangential to it, on a curved
-// surface by the mean of both normals. Or, whatever normals a bump map made: the neighbour and the one beyond it lead to the
-// pixel.
+// Whether the pixel and its neighbour lie on one smooth surface. With normals: the line between them is perpendicular to the mean
+// of both normals. Or, because a bump map may have changed the normals: the line through the neighbour and the pixel beyond it
+// leads to the pixel.
 static bool continues(const repair *r, int x, int y, int dx, int dy)
 {
     const build *b = r->b;
@@ -91,7 +92,7 @@ static bool continues(const repair *r, int x, int y, int dx, int dy)
     return beyond.z > 0.0 && fabs(here.z - 2.0 * next.z + beyond.z) < most_bend * pixel;
 }
 
-// A pixel of one surface: its normal is whole, and along either axis it continues to at least one side.
+// A clean pixel shows one surface: its normal has full length, and along each axis at least one neighbour continues it.
 static bool is_clean(const repair *r, int x, int y)
 {
     const build *b = r->b;
@@ -225,8 +226,8 @@ static mixture best_mixture(const repair *r, const stored *s, const side *list, 
     return best;
 }
 
-// How a bump map turns the normals around the clean pixel of a side away from the surface that the places form; 0 and false where
-// too few pixels tell.
+// How far a bump map turns the normals around a side's clean pixel away from the surface that the positions form. 0 and false
+// where there are too few pixels to tell.
 static bool bump_at(const repair *r, const side *own, int x, int y, vec3 *bump)
 {
     static const int step[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
@@ -247,8 +248,8 @@ static bool bump_at(const repair *r, const side *own, int x, int y, vec3 *bump)
     return true;
 }
 
-// Where a round surface turns away from the eye, the squared cosine between its normal and the ray falls to 0 at the outline, in
-// proportion to the distance from it. A pixel's mean normal is that of a place nearer to the clean pixel than its centre.
+// At the outline of a round surface the squared cosine between normal and ray is 0. Further inside it grows in proportion to the
+// distance from the outline. A pixel's mean normal belongs to a place nearer to the clean pixel than the pixel's centre.
 static vec3 normal_at_centre(const build *b, vec3 mean, vec3 clean, const side *own, double share, int x, int y)
 {
     vec3 ray = v3_normalize(build_ray(&b->g->camera, x, y)), across = v3_sub(mean, v3_scale(ray, v3_dot(mean, ray)));
@@ -263,9 +264,9 @@ static vec3 normal_at_centre(const build *b, vec3 mean, vec3 clean, const side *
     return v3_add(v3_scale(v3_normalize(across), sqrt(1.0 - q)), v3_scale(ray, sign * sqrt(q)));
 }
 
-// Planar depth of the near surface at the pixel's centre. Two ways lead to it: along the surface from the clean pixel, whose
-// error grows with the way and the curvature; or by taking the far side's share out of what is stored, whose error grows with the
-// share and the distance between the two.
+// Planar depth of the near surface at the pixel's centre. There are two estimates. One follows the surface from the clean pixel;
+// its error grows with the distance and the curvature. The other takes the far side's share out of the stored depth; its error
+// grows with that share and with the distance between the two sides.
 static double near_depth(const repair *r, const stored *s, const mixture *m, vec3 at, vec3 clean, double odd, int x, int y)
 {
     const build *b = r->b;

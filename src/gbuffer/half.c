@@ -70,9 +70,10 @@ static double facing(const gbuffer *g, int x, int y)
     return fabs(g->camera.kind == CAMERA_ORTHOGRAPHIC ? n.z : v3_dot(n, p) / v3_length(p));
 }
 
-// Which member represents the block, and its depth there. The median comes first; another only where the median's plane says
-// nothing about the block's centre. Depth 0: all are seen nearly edge-on (the last row below a horizon), where a depth kept from
-// beside the centre would be far off the surface.
+// Chooses the member that represents the block, and its depth at the block's centre. The median comes first; another is taken
+// only where the median's plane says nothing about the centre. If no plane does, the median keeps its own depth; or it gets depth
+// 0 if it is seen nearly edge-on (the last row below a horizon), because there its own depth would be far off the surface at the
+// centre.
 static int choose(const gbuffer *g, int bx, int by, int n, const int px[4], const int py[4], double *depth)
 {
     int middle = (n - 1) / 2;

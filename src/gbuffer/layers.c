@@ -129,7 +129,7 @@ static void fill(const exrio_file *file, int p, int c, layer_entry *out)
         snprintf(out->layer, sizeof out->layer, "%s", own[0] ? own : prefix);
 }
 
-// What the chosen view has itself stands before what is of no view; what is left is of none.
+// Drops a channel of no view where the chosen view has that channel itself. Then clears all views.
 static void prefer_own(layer_index *index)
 {
     int kept = 0;

@@ -122,7 +122,7 @@ static double typical_depth(const build *b, size_t i, double unused)
     return b->depth_wins ? b->point_depth[i] : seen(b, i).z;
 }
 
-// Half floats have 11 bits: a surface's depths are steps then, each several pixels wide where it faces the eye.
+// Half floats have 11 bits. So the depths of a surface form steps, each several pixels wide where the surface faces the eye.
 static void warn_half(build *b)
 {
     const camera *c = &b->g->camera;

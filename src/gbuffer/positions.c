@@ -90,9 +90,9 @@ bool positions_raw(build *b)
     return true;
 }
 
-// Depths of the neighbours' surfaces, as what is linear across a plane's picture: a surface moves by less than a pixel, so it
-// stays within their range, or at a frame's border beyond it by no more than that. Beyond, an edge (or a shading normal that is
-// not the surface's) forbids the move.
+// Whether the neighbours' depths allow depth z. They are compared as values that are linear across a plane's picture. A pixel
+// moves by less than a pixel, so its depth stays near the range of its neighbours: beyond it by at most half that range, at the
+// frame's border by at most all of it. A larger change means an edge, or a shading normal that is not the surface's.
 static bool neighbours_allow(const build *b, int x, int y, double z)
 {
     bool inverse = b->g->camera.kind == CAMERA_PERSPECTIVE;
@@ -108,7 +108,8 @@ static bool neighbours_allow(const build *b, int x, int y, double z)
     return at >= low - slack && at <= high + slack;
 }
 
-// A position far from its pixel: the depth channel's word if it is known what that is, else only if a neighbour lies close.
+// Depth for a position far from its pixel: the depth channel's if its meaning is known; else P's own if a neighbour's is close;
+// else none.
 static double depth_of_stray(build *b, int x, int y)
 {
     atomic_fetch_add(&b->bad_positions, 1);
@@ -124,7 +125,7 @@ static double depth_of_stray(build *b, int x, int y)
     return 0.0;
 }
 
-// *moved: the plane through P was followed to the pixel's own ray.
+// *moved: depth is where the plane through P meets the pixel's own ray.
 static double final_depth(build *b, int x, int y, bool *moved)
 {
     double z = (double)b->raw[build_index(b, x, y)];
