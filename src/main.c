@@ -54,7 +54,8 @@ static bool run_frame(job *j, error *e)
     progress_begin(&p, o->progress, 1, j->log);
     j->progress = &p;
     frame_record record;
-    bool ok = record_make(j, 0, &record, e);
+    // What was made before is compared with the device; otherwise the frame is read while the device opens.
+    bool ok = record_make(j, 0, &record, e) && (!o->skip_existing || job_open_device(j, e));
     const char *why = ok ? resume_skips(j, 0, o->inputs, o->input_count, o->output, &record) : NULL;
     if (why) {
         progress_line(&p, "%s: skipped, %s", o->output, why);
@@ -81,15 +82,12 @@ static bool run_on(const options *o, run_files *files, const volatile int *stop_
 {
     job j;
     if (!batch_is(o) && !run_files_check(files, (const int[]){0}, 1, e)) return false;
-    // A single frame is read while the context opens; what was made before is compared with the device first.
-    bool alone = !batch_is(o) && !o->skip_existing;
     if (!run_files_read(files, o, e)) return false;
-    if (alone) job_init(&j, o, log);
-    bool ok = (alone || job_open(&j, o, log, e)) && check_targets(o, e);
+    job_open(&j, o, log);
     j.stop = stop_signal;
     j.no_floats = !o->preview;
     j.files = files;
-    if (ok) ok = batch_is(o) ? batch_run(&j, e) : run_frame(&j, e);
+    bool ok = check_targets(o, e) && (batch_is(o) ? batch_run(&j, e) : run_frame(&j, e));
     job_close(&j);
     return ok;
 }

@@ -105,7 +105,8 @@ static bool open_for(ssdo_context *c, const options *o)
         c->job.o = o;
         return true;
     }
-    if (!job_open(&c->job, o, &c->log, &c->e)) {
+    job_open(&c->job, o, &c->log);
+    if (!job_open_device(&c->job, &c->e)) {
         job_close(&c->job);
         return false;
     }

@@ -382,8 +382,9 @@ static bool conclude(const batch *b, error *e)
 
 bool batch_run(job *j, error *e)
 {
-    batch *b = mem_zero(1, sizeof *b, e);
     pthread_t threads[2];
+    if (!job_open_device(j, e)) return false;
+    batch *b = mem_zero(1, sizeof *b, e);
     if (!b) return false;
     b->j = j;
     j->no_pass_times = j->o->report && !pattern_is(j->o->report);

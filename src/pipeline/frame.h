@@ -2,37 +2,12 @@
 #ifndef SSDO_PIPELINE_FRAME_H
 #define SSDO_PIPELINE_FRAME_H
 
-#include "base/log.h"
-#include "cli/options.h"
-#include "cli/progress.h"
 #include "gbuffer/gbuffer.h"
-#include "gpu/gpu.h"
-#include "light/environment.h"
 #include "passes/pass.h"
-#include "passes/trace.h"
-#include "pipeline/files.h"
+#include "pipeline/job.h"
 #include "pipeline/plan.h"
 #include "pipeline/record.h"
 #include "pipeline/steps.h"
-
-// What lives for all frames of a run: options, context, environment.
-typedef struct job {
-    const options *o;
-    log_t *log;
-    const run_files *files; // borrowed: all that is read and written. NULL where only a frame is asked for
-    int threads;
-    gpu g;
-    bool env_loaded; // the environment needs the first frame's renderer for its default up axis
-    environment env;
-    gpu_image env_image;
-    pass_sunless sunless;
-    trace_scene trace;        // --mesh
-    const volatile int *stop; // borrowed, may be NULL: once it is not zero, frames are dropped unless they are being written
-    progress *progress;       // borrowed, may be NULL
-    bool no_floats;           // nobody looks at a frame's `layers`: they are not kept
-    bool no_pass_times;       // nobody looks at the passes' own times, for which each would have to be waited for
-    double sequence_radius;   // automatic radius of the whole sequence; 0: each frame has its own
-} job;
 
 typedef enum stage { STAGE_READ, STAGE_RESOLVE, STAGE_PASSES, STAGE_READ_BACK, STAGE_CONVERT, STAGE_WRITE, STAGE_COUNT } stage;
 
@@ -75,27 +50,17 @@ typedef struct frame_result {
     struct frame_result *next_view; // owned; shares the file
 } frame_result;
 
-// A job without a context yet, for frame_run_files alone, which opens it while the file is being read. stop, progress and
-// no_floats are the caller's to set afterwards. Before any thread of ours starts.
-void job_init(job *j, const options *o, log_t *log);
-// The same with the context.
-bool job_open(job *j, const options *o, log_t *log, error *e);
-// True if the run was asked to stop.
-bool job_stopped(const job *j);
-void job_close(job *j);
-// Environment and mesh, so that the next frame begins as the first one did. On the context's thread.
-void job_forget_light(job *j);
-
 // The three stages of a frame, to be called in this order on one result; after a failure only frame_free. When the job is stopped
 // before the passes have ended, filtering returns false without an error. Reading and writing may
-// run on other threads than filtering, which belongs to the context's thread; of one job no stage runs twice at a time.
+// run on other threads than filtering, which belongs to the device's thread and opens the device if nobody has; of one job no
+// stage runs twice at a time.
 bool frame_read(const job *j, const char *input, frame_result *result, error *e); // starts by zeroing the result
 // The same for a frame whose passes are in several files.
 bool frame_read_files(const job *j, const char *const *inputs, int count, frame_result *result, error *e);
 bool frame_filter(job *j, frame_result *result, error *e);
 
 // Filtering in four steps, for who does other frames beside it. frame_prepare may follow reading on its thread, once
-// result->frame is set; frame_begin and frame_wait belong to the context's thread, and between them another frame may begin;
+// result->frame is set; frame_begin and frame_wait belong to the device's thread, and between them another frame may begin;
 // frame_convert may precede writing on its thread.
 bool frame_prepare(const job *j, frame_result *result, error *e);
 bool frame_begin(job *j, frame_result *result, error *e); // the passes; the layers are on their way
@@ -106,7 +71,7 @@ bool frame_is_under_way(const frame_result *result);
 
 bool frame_write(const job *j, frame_result *result, const char *output, error *e);
 
-// All three.
+// All three. Where the device is not open yet, it is opened while the file is being read.
 bool frame_run(job *j, const char *input, const char *output, frame_result *result, error *e);
 // record: NULL for none.
 bool frame_run_files(job *j, const char *const *inputs, int count, const char *output, const frame_record *record,

@@ -8,7 +8,8 @@ bool rig_open(rig *r, const env_options *env, error *e)
     *r = (rig){0};
     options_defaults(&r->options);
     log_init(&r->log, LOG_QUIET);
-    if (!job_open(&r->job, &r->options, &r->log, e)) return false;
+    job_open(&r->job, &r->options, &r->log);
+    if (!job_open_device(&r->job, e)) return false;
     if (!env) return true;
     if (!environment_load(env, &r->job.env, &r->log, e)) return false;
     r->job.env_loaded = true;

@@ -64,7 +64,7 @@ static double after(int frames)
     options_defaults(&o);
     must(options_parse(sizeof argv / sizeof *argv, argv, &o, &e), &e);
     log_init(&log, LOG_QUIET);
-    must(job_open(&j, &o, &log, &e), &e);
+    job_open(&j, &o, &log);
     must(batch_run(&j, &e), &e);
     double left = resident();
     job_close(&j);

@@ -124,7 +124,7 @@ static void filter(const char *path, const char *space, frame_result *r)
     options_defaults(&o);
     o.samples = 16, o.albedo_colorspace = space, o.ocio = space ? config : NULL;
     log_init(&log, LOG_QUIET);
-    must(job_open(&j, &o, &log, &e), &e);
+    job_open(&j, &o, &log);
     must(frame_read(&j, path, r, &e), &e);
     must(frame_filter(&j, r, &e), &e);
     job_close(&j);

@@ -248,7 +248,7 @@ static void run_whole(whole *x, const char *input, double depthmask, const char 
     x->o.multiply = multiply;
     x->o.keep_none = true;
     log_init(&x->log, LOG_QUIET);
-    must(job_open(&x->j, &x->o, &x->log, &e), &e);
+    job_open(&x->j, &x->o, &x->log);
     must(frame_run(&x->j, input, output, &x->r, &e), &e);
     remove(output);
 }

@@ -121,7 +121,7 @@ static void filter_file(const char *in, const char *out, void (*change)(options 
     options_defaults(&o);
     if (change) change(&o);
     log_init(&log, LOG_QUIET);
-    must(job_open(&j, &o, &log, &e), &e);
+    job_open(&j, &o, &log);
     must(frame_run(&j, in, out, &r, &e), &e);
     frame_free(&r);
     job_close(&j);

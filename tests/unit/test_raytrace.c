@@ -266,7 +266,7 @@ static void open_box(traced *t)
     t->o.layers = "occlusion,radiance,indirect,visibility";
     t->o.samples = 1; // replaced below
     log_init(&t->log, LOG_QUIET);
-    must(job_open(&t->j, &t->o, &t->log, &e), &e);
+    job_open(&t->j, &t->o, &t->log);
     must(frame_read(&t->j, t->s.file, &t->r, &e), &e);
     must(frame_filter(&t->j, &t->r, &e), &e); // loads the environment and resolves the settings
 }

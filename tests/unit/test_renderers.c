@@ -56,7 +56,7 @@ static int set_up(void **state)
     make_scene();
     options_defaults(&defaults);
     log_init(&quiet, LOG_QUIET);
-    must(job_open(&work, &defaults, &quiet, &e), &e);
+    job_open(&work, &defaults, &quiet);
     for (int i = 0; i < 2; i++) {
         const renderer_fact plain = {.expected = "plain",
                                      .position = "P:XYZ",

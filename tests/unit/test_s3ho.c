@@ -222,7 +222,7 @@ static bool run_whole(whole *x, int bands, const char *input, const char *output
     x->o.env = env;
     x->o.env_rotate = 40.0;
     log_init(&x->log, LOG_QUIET);
-    must(job_open(&x->j, &x->o, &x->log, e), e);
+    job_open(&x->j, &x->o, &x->log);
     return frame_run(&x->j, input, output, &x->r, e);
 }
 
@@ -323,7 +323,7 @@ static void missing_layers_are_named(void **state)
     x.o.layers = "sh_1";
     x.o.method = "ssdo";
     log_init(&x.log, LOG_QUIET);
-    must(job_open(&x.j, &x.o, &x.log, &e), &e);
+    job_open(&x.j, &x.o, &x.log);
     assert_false(frame_run(&x.j, "samples/still.exr", output, &x.r, &e));
     assert_non_null(strstr(e.message, "s3ho"));
     free_whole(&x);

@@ -37,7 +37,8 @@ static void open_job(job *j, options *o, log_t *log, const way *w)
     error e = {0};
     o->threads = w->threads;
     log_init(log, LOG_QUIET);
-    must(job_open(j, o, log, &e), &e);
+    job_open(j, o, log);
+    must(job_open_device(j, &e), &e);
     j->g.mapped = w->mapped;
     if (w->band) j->g.band_bytes = w->band;
 }

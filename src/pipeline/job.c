@@ -1,0 +1,41 @@
+#include "pipeline/job.h"
+
+#include "base/threads.h"
+#include "plugin/colour.h"
+
+void job_open(job *j, const options *o, log_t *log)
+{
+    *j = (job){.o = o, .log = log, .threads = o->threads > 0 ? o->threads : threads_default()};
+    if (!o->hosted) gpu_set_up();
+    if (!colour_config(o->ocio))
+        log_info(log, "colour: no OpenColorIO config, so beauty, albedo and environment count as linear");
+}
+
+bool job_open_device(job *j, error *e)
+{
+    const gpu_request request = {
+        .device = j->o->device, .hardware = j->o->require_gpu, .debug = j->o->gpu_debug, .hosted = j->o->hosted};
+    if (j->g.context) return true;
+    if (!gpu_open_as(&j->g, request, j->log, e)) return false;
+    j->g.threads = j->threads;
+    return true;
+}
+
+bool job_stopped(const job *j) { return j->stop && *j->stop; }
+
+void job_forget_light(job *j)
+{
+    gpu_image_free(&j->env_image);
+    gpu_image_free(&j->sunless.map);
+    trace_scene_close(&j->trace);
+    if (j->env_loaded) environment_free(&j->env);
+    j->env_loaded = false;
+    j->sunless = (pass_sunless){0};
+    j->trace = (trace_scene){0};
+}
+
+void job_close(job *j)
+{
+    job_forget_light(j);
+    gpu_close(&j->g);
+}

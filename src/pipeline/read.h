@@ -1,0 +1,15 @@
+// Reading a frame: files, channels, G-buffer.
+#ifndef SSDO_PIPELINE_READ_H
+#define SSDO_PIPELINE_READ_H
+
+#include "pipeline/frame.h"
+#include "pipeline/stopwatch.h"
+
+// frame_read_files; where the job's device is not open yet, it is opened here, on the calling thread, while another thread reads
+// and prepares the frame.
+bool read_and_open(job *j, const char *const *inputs, int count, frame_result *r, error *e);
+
+// Adds to a stage's times what has passed since.
+void frame_lap(frame_result *r, stage s, stopwatch *since);
+
+#endif
