@@ -6,23 +6,9 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "exr/write.h"
+#include "pipeline/output_view.h"
 #include "pipeline/verify.h"
 #include "pipeline/views.h"
-
-enum { MAX_OURS = LAYER_COUNT * 4 + 5, NAME_SIZE = 128, MAX_ATTRS = 12 + VIEWS_MAX };
-
-// Everything exrio_write borrows for one view.
-typedef struct assembly {
-    char names[MAX_OURS][NAME_SIZE];
-    exrio_out_channel ours[MAX_OURS];
-    int our_count;
-    exrio_out_attr attrs[MAX_ATTRS];
-    int attr_count;
-    char *args; // owned
-    char camera[512], environment[600];
-    char part_name[64], camera_name[64];
-} assembly;
 
 // All of it.
 typedef struct book {
@@ -36,73 +22,6 @@ typedef struct book {
     exrio_out_attr first_record;  // of the file's first part, where that is not one of ours
     exrio_out_part *shared;       // of views that names tell: the part that has the first one's layers, and so the others'
 } book;
-
-// What a name in a file of ours depends on.
-typedef struct naming {
-    const options *o;
-    const exrio_file *file;
-    const char *view; // NULL without views
-} naming;
-
-static void layer_channel(const naming *n, const char *layer, char component, char *name)
-{
-    char plain[NAME_SIZE];
-    snprintf(plain, sizeof plain, "%s%s.%c", n->o->prefix ? n->o->prefix : "", layer, component);
-    view_name(n->file, n->view, plain, name, NAME_SIZE);
-}
-
-static bool is_ours(const naming *n, const plan *p, const char *channel)
-{
-    char name[NAME_SIZE];
-    for (int l = 0; l < LAYER_COUNT; l++)
-        for (int k = 0; p->layers & 1u << l && layer_table[l]->channels[k]; k++) {
-            layer_channel(n, layer_table[l]->name, layer_table[l]->channels[k], name);
-            if (strcmp(name, channel) == 0) return true;
-        }
-    layer_channel(n, "composite", 'A', name);
-    return p->layers & 1u << LAYER_COMPOSITE && strcmp(name, channel) == 0;
-}
-
-// R, G, B and A of the view, which --main composite replaces.
-static bool is_main(const naming *n, const char *channel)
-{
-    char name[NAME_SIZE];
-    for (const char *c = "RGBA"; *c; c++) {
-        view_name(n->file, n->view, (const char[]){*c, 0}, name, sizeof name);
-        if (strcmp(name, channel) == 0) return true;
-    }
-    return false;
-}
-
-bool output_check_names(const options *o, const exrio_file *file, const char *view, const plan *p, error *e)
-{
-    const naming n = {o, file, view};
-    if (o->main_composite && !(p->layers & 1u << LAYER_COMPOSITE))
-        return err_set(
-            e, ERR_INPUT, file->path, NULL,
-            "--main composite needs the composite layer, which is not made here; add it to --layers, or leave out --main");
-    for (int i = 0; !o->keep_none && i < file->part_count; i++)
-        for (int c = 0; c < file->parts[i].channel_count && !file->parts[i].deep; c++)
-            if (is_ours(&n, p, file->parts[i].channels[c].name) && !exrio_attr_exists(file, i, "ssdo/version"))
-                return err_set(e, ERR_INPUT, file->path, file->parts[i].channels[c].name,
-                               "the input already has a channel that we would write, and it is not ours; use --prefix to name "
-                               "ours otherwise");
-    return true;
-}
-
-// Nothing of the part is dropped or changed, so its chunks can be copied unseen.
-bool output_keeps_chunks(const options *o, const exrio_file *file, int part, const plan *p)
-{
-    const exrio_part *in = &file->parts[part];
-    if (in->deep) return true;
-    if (!o->multipart || o->keep_none || o->compression || !exrio_part_is_verbatim(in) || file->members) return false;
-    for (int v = -1; v < in->view_count; v++) { // of any view, so that the answer is the same for each
-        const naming n = {o, file, v < 0 ? NULL : in->views[v]};
-        for (int c = 0; c < in->channel_count; c++)
-            if (is_ours(&n, p, in->channels[c].name)) return false;
-    }
-    return true;
-}
 
 static int compression_of(const options *o, const exrio_part *part)
 {
@@ -120,88 +39,12 @@ static int compression_of(const options *o, const exrio_part *part)
     return part->compression > (int)EXR_COMPRESSION_PIZ ? EXR_COMPRESSION_ZIP : part->compression;
 }
 
-// The channels of the composite once more, as R, G, B and A.
-static void add_main(assembly *a, const naming *n)
-{
-    char name[NAME_SIZE];
-    for (const char *c = "RGBA"; *c; c++) {
-        layer_channel(n, "composite", *c, name);
-        for (int i = 0, count = a->our_count; i < count; i++) {
-            if (strcmp(a->names[i], name) != 0) continue;
-            view_name(n->file, n->view, (const char[]){*c, 0}, a->names[a->our_count], NAME_SIZE);
-            a->ours[a->our_count] = (exrio_out_channel){a->names[a->our_count], a->ours[i].type, a->ours[i].data};
-            a->our_count++;
-        }
-    }
-}
-
-static naming naming_of(const job *j, const frame_result *r) { return (naming){j->o, r->file, r->view}; }
-
-static void add_layers(assembly *a, const job *j, const frame_result *r)
-{
-    const naming n = naming_of(j, r);
-    for (int l = 0; l < LAYER_COUNT; l++)
-        for (int k = 0; r->samples[l][0] && layer_table[l]->channels[k]; k++) {
-            layer_channel(&n, layer_table[l]->name, layer_table[l]->channels[k], a->names[a->our_count]);
-            a->ours[a->our_count] = (exrio_out_channel){a->names[a->our_count], r->types[l], r->samples[l][k]};
-            a->our_count++;
-        }
-    if (!r->samples[LAYER_COMPOSITE][0] || !r->resolution.components[ROLE_ALPHA]) return;
-    // The composite's alpha is the input's own, bits and type.
-    channel_ref ref = r->resolution.channels[ROLE_ALPHA][0];
-    const exrio_channel *alpha = &r->file->parts[ref.part].channels[ref.channel];
-    layer_channel(&n, "composite", 'A', a->names[a->our_count]);
-    a->ours[a->our_count] = (exrio_out_channel){a->names[a->our_count], alpha->type, alpha->data};
-    a->our_count++;
-}
-
-static exrio_out_attr *add_attr(assembly *a, const char *name, exrio_attr_kind kind)
-{
-    exrio_out_attr *attr = &a->attrs[a->attr_count++];
-    *attr = (exrio_out_attr){.name = name, .kind = kind};
-    return attr;
-}
-
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
-static bool add_attributes(assembly *a, const job *j, const frame_result *r, error *e)
-{
-    static const char *sources[] = {"option", "fit", "header", "plane"};
-    const camera *c = &r->gb.camera;
-    add_attr(a, "ssdo/version", EXRIO_OUT_STRING)->string = SSDO_VERSION;
-    a->args = options_record(j->o, e);
-    if (!a->args) return false;
-    add_attr(a, "ssdo/args", EXRIO_OUT_STRING)->string = a->args;
-    snprintf(a->camera, sizeof a->camera, "%s focal %.9g %.9g centre %.9g %.9g source %s",
-             c->kind == CAMERA_ORTHOGRAPHIC ? "orthographic" : "perspective", c->fx, c->fy, c->cx, c->cy, sources[c->source]);
-    add_attr(a, "ssdo/camera", EXRIO_OUT_STRING)->string = a->camera;
-    add_attr(a, "ssdo/radius", EXRIO_OUT_FLOAT)->number = r->set.radius;
-    add_attr(a, "ssdo/device", EXRIO_OUT_STRING)->string = j->g.device;
-    add_attr(a, "ssdo/method", EXRIO_OUT_STRING)->string = r->plan.method->name;
-    snprintf(a->environment, sizeof a->environment, "%s", j->o->env ? base_name(j->o->env) : "white, radiance 1");
-    if (r->plan.light) add_attr(a, "ssdo/environment", EXRIO_OUT_STRING)->string = a->environment;
-    // A part of our own copies nothing else from the input's.
-    if (view_in_names(r->file, r->view)) {
-        exrio_out_attr *views = add_attr(a, "multiView", EXRIO_OUT_STRINGS);
-        views->string_count = exrio_attr_strings(r->file, r->resolution.main_part, "multiView", views->strings, EXRIO_VIEWS);
-    }
-    exrio_out_attr primaries = {.name = "chromaticities", .kind = EXRIO_OUT_CHROMATICITIES};
-    if (exrio_attr_chromaticities(r->file, r->resolution.main_part, primaries.xy)) a->attrs[a->attr_count++] = primaries;
-    add_attr(a, "ssdo/premult", EXRIO_OUT_STRING)->string =
-        "composite: premultiplied; occlusion, visibility: ratios; radiance, indirect: per unit coverage";
-    return true;
-}
-
 // Made anew, for the view or (where names tell views) any that comes after it in the list.
 static bool is_replaced(const job *j, const frame_result *r, const char *channel, bool merged)
 {
     for (bool in_names = view_in_names(r->file, r->view); r; r = in_names ? r->next_view : NULL) {
         const naming n = naming_of(j, r);
-        if (is_ours(&n, &r->plan, channel) || (merged && j->o->main_composite && is_main(&n, channel))) return true;
+        if (name_is_ours(&n, &r->plan, channel) || (merged && j->o->main_composite && name_is_main(&n, channel))) return true;
     }
     return false;
 }
@@ -299,7 +142,7 @@ static void append_view(book *k, assembly *a, const frame_result *r)
     assembly *first = k->views[0];
     for (int i = 0; i < a->our_count; i++) k->shared->channels[k->shared->channel_count++] = a->ours[i];
     snprintf(a->camera_name, sizeof a->camera_name, "ssdo/camera.%s", r->view);
-    add_attr(first, a->camera_name, EXRIO_OUT_STRING)->string = a->camera;
+    view_add_attribute(first, a->camera_name, EXRIO_OUT_STRING)->string = a->camera;
     k->shared->attribute_count = first->attr_count;
 }
 
@@ -432,11 +275,11 @@ static bool add_view(book *k, const job *j, frame_result *r, bool recorded, erro
     assembly *a = k->views[k->view_count] = mem_zero(1, sizeof *a, e);
     if (!a) return false;
     k->view_count++;
-    add_layers(a, j, r);
+    view_add_layers(a, j, r);
     const naming n = naming_of(j, r);
-    if (j->o->main_composite) add_main(a, &n);
-    if (!add_attributes(a, j, r, e)) return false;
-    if (recorded) add_attr(a, RECORD_NAME, EXRIO_OUT_STRING)->string = k->record;
+    if (j->o->main_composite) view_add_main(a, &n);
+    if (!view_add_attributes(a, j, r, e)) return false;
+    if (recorded) view_add_attribute(a, RECORD_NAME, EXRIO_OUT_STRING)->string = k->record;
     if (k->shared && view_in_names(r->file, r->view)) {
         append_view(k, a, r);
         return true;
