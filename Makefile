@@ -11,7 +11,8 @@ DOCDIR   := $(PREFIX)/share/doc/ssdo-filter
 INCDIR   := $(PREFIX)/include
 SODIR    := $(PREFIX)/lib
 PCDIR    := $(SODIR)/pkgconfig
-BUILD    ?= build
+SANITIZE ?=
+BUILD    ?= build$(if $(SANITIZE),/$(subst $(comma),-,$(SANITIZE)))# each sanitizer has a folder of its own
 JOBS     := $(if $(findstring j,$(MAKEFLAGS)),,-j$(shell nproc)) # of the inner make, when the user gave none
 Q        := $(if $(V),,@)# make V=1 shows the commands
 ifeq ($(origin CC),default)
@@ -33,12 +34,13 @@ PKG_CFLAGS  = $(shell pkg-config --cflags $(PKGS) | sed 's/-I/-isystem /g')
 # run time too. OpenEXR's C++ libraries, which are not used, are not linked.
 RPATHS      = $(patsubst -L%,-Wl$(comma)-rpath$(comma)%,$(shell pkg-config --libs-only-L $(1)))
 comma      := ,
-PKG_LIBS    = -Wl,--as-needed $(shell pkg-config --libs $(PKGS)) $(call RPATHS,$(PKGS)) -lpthread -ldl -lm
+LIBS        = -Wl,--as-needed $(shell pkg-config --libs $(PKGS)) $(call RPATHS,$(PKGS)) -lpthread -ldl -lm
+PKG_LIBS    = $(SANOBJ) $(LIBS)
 # Embree has no pkg-config file; the header that src/plugin/embree.h finds tells the version.
 EMBREE      = -lembree$(shell echo RTC_VERSION_MAJOR | $(CXX) $(CXXFLAGS) -include src/plugin/embree.h -E -P -x c++ - | tail -1)
 
-SANITIZE ?=
-SANFLAGS := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-omit-frame-pointer)
+SANFLAGS := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
+SANOBJ   := $(if $(SANITIZE),$(BUILD)/tests/sanitize/options.o)# how the sanitizers behave
 # Integer constants are named by enums here, which clang 19 finds odd beside floats.
 WARN     := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wno-enum-float-conversion
 CFLAGS   ?= -O2 -g
@@ -97,14 +99,14 @@ $(BIN): $(BUILD)/src/main.o $(BUILD)/rooms.a
 	@echo "  link $@"
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
 
-$(BUILD)/rooms.a: $(OBJ)
+$(BUILD)/rooms.a: $(OBJ) | $(SANOBJ)
 	@rm -f $@
 	@ar rcsD $@ $^
 
 $(BUILD)/lib/$(SONAME): $(OBJ)
 	@mkdir -p $(@D)
 	@echo "  link $@"
-	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -shared -Wl,-soname,$(SONAME) $(if $(SANITIZE),,-Wl$(comma)-z$(comma)defs) -o $@ $^ $(PKG_LIBS)
+	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -shared -Wl,-soname,$(SONAME) $(if $(SANITIZE),,-Wl$(comma)-z$(comma)defs) -o $@ $^ $(LIBS)
 $(BUILD)/lib/libssdo.so: $(BUILD)/lib/$(SONAME)
 	@ln -sf $(SONAME) $@
 $(BUILD)/lib/libssdo.a: $(OBJ)

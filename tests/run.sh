@@ -4,17 +4,12 @@
 # JOBS_TEST (2) run at a time; those that tests/serial.txt names run alone, after them. T: only tests whose name holds this text.
 build=$1
 shift
-logs=$build/tests/logs
+logs=$(cd "$build" && pwd)/tests/logs
 rm -rf "$logs"
 mkdir -p "$logs"
 SSDO=$(cd "$build" && pwd)/ssdo-filter
 export SSDO logs
 began=$(date +%s)
-# For programs built with SANITIZE=...: allocations that tests let fail, and the preloaded library of faults.sh, which comes before
-# the sanitizer. Leaks are not looked for: a driver that is closed takes the names of what it keeps with it, so that no list of
-# suppressions could tell its leaks from ours.
-ASAN_OPTIONS=allocator_may_return_null=1:verify_asan_link_order=0:detect_leaks=0 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
-export ASAN_OPTIONS UBSAN_OPTIONS
 
 all() {
     for t in "$@"; do echo "$t"; done
@@ -24,11 +19,15 @@ all() {
 # Runs one test and tells at once what became of it, in one piece; the log beside its mark is what is counted in the end.
 cat >"$logs/one" <<'ONE'
 name=$1 log=$logs/$(basename "$1").log
+# What a sanitizer has to say fails the test, also where a script expects its program to fail (tests/sanitize/options.c has the rest).
+reports=$log.reports
+export ASAN_OPTIONS="log_path=$reports" UBSAN_OPTIONS="log_path=$reports"
 case $1 in *.sh) set -- sh "$1" ;; *) name=$(basename "$1") ;; esac
 start=$(date +%s)
 "$@" >"$log" 2>&1
 code=$?
 took=$(($(date +%s) - start))
+grep -l -e ERROR: -e 'runtime error' "$reports".* >"$log.found" 2>/dev/null && { xargs head -40 <"$log.found" >>"$log"; code=66; }
 {
     case $code in
     0) echo "ok      $name ($took s)"; grep '^figure:' "$log" ;;

@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "light/primaries.h"
+#include "modules.h"
 #include "must.h"
 #include "pipeline/frame.h"
 #include "plugin/colour.h"
@@ -24,7 +25,7 @@ static const double acescg[8] = {0.713, 0.293, 0.165, 0.830, 0.128, 0.044, 0.321
 static int set_up(void **state)
 {
     (void)state;
-    setenv("SSDO_PLUGIN_DIR", "build", 0);
+    use_built_modules();
     unsetenv("OCIO");
     return mkdtemp(folder) ? 0 : -1;
 }

@@ -1,19 +1,16 @@
 // Files that change while they are read, and pictures that no compression can make shorter. `make check SANITIZE=address` sees
 // what is read or written beyond a buffer's end.
-#include <libgen.h>
 #include <openexr.h>
 #include <sys/stat.h>
 
 #include "exr/codec.h"
 #include "exr/library.h"
 #include "exrio_support.h"
+#include "modules.h"
 
-static int use_built_module(void **state)
+static int set_up(void **state)
 {
-    char exe[4000] = "", folder[4100];
-    if (readlink("/proc/self/exe", exe, sizeof exe - 1) < 0) return -1;
-    snprintf(folder, sizeof folder, "%s/..", dirname(exe)); // build/tests/.. is where the module is built
-    setenv("SSDO_PLUGIN_DIR", folder, 0);
+    use_built_modules();
     return make_scratch(state);
 }
 
@@ -144,5 +141,5 @@ int main(void)
         cmocka_unit_test(test_dwa_that_shrinks), cmocka_unit_test(test_zip_that_is_replaced), cmocka_unit_test(test_piz_of_noise),
         cmocka_unit_test(test_room_for_piz),     cmocka_unit_test(test_no_regular_file),
     };
-    return cmocka_run_group_tests(tests, use_built_module, remove_scratch);
+    return cmocka_run_group_tests(tests, set_up, remove_scratch);
 }

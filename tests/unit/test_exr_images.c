@@ -1,15 +1,12 @@
 // The OpenImageIO module: PNG out, other image formats in, and a clear remedy when it is missing.
-#include <libgen.h>
 
 #include "exrio_support.h"
+#include "modules.h"
 #include "plugin/images.h"
 
-static int use_built_module(void **state)
+static int set_up(void **state)
 {
-    char exe[4000] = "", folder[4100];
-    if (readlink("/proc/self/exe", exe, sizeof exe - 1) < 0) return -1;
-    snprintf(folder, sizeof folder, "%s/..", dirname(exe)); // build/tests/.. is where the module is built
-    setenv("SSDO_PLUGIN_DIR", folder, 0);
+    use_built_modules();
     return make_scratch(state);
 }
 
@@ -150,5 +147,5 @@ int main(void)
         cmocka_unit_test(test_missing_part_or_channel), cmocka_unit_test(test_without_the_module),
         cmocka_unit_test(test_broken_module),
     };
-    return cmocka_run_group_tests(tests, use_built_module, remove_scratch);
+    return cmocka_run_group_tests(tests, set_up, remove_scratch);
 }

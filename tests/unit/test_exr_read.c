@@ -1,20 +1,14 @@
 // Files other programs made: tiled, mip-mapped, any line order, several parts, lossy compressions.
 // The C++ library is the reference: exrmaketiled -z none stores what it decodes, which leaves our reader little to do.
-#include <libgen.h>
-
 #include <openexr.h>
 
 #include "exr/library.h"
 #include "exrio_support.h"
+#include "modules.h"
 
-static char module_folder[4096];
-
-static int make_module_folder(void **state)
+static int set_up(void **state)
 {
-    char exe[4000] = "";
-    if (readlink("/proc/self/exe", exe, sizeof exe - 1) < 0) return -1;
-    snprintf(module_folder, sizeof module_folder, "%s/..", dirname(exe)); // build/tests/.. is where the module is built
-    setenv("SSDO_PLUGIN_DIR", module_folder, 0);
+    use_built_modules();
     return make_scratch(state);
 }
 
@@ -228,5 +222,5 @@ int main(void)
         cmocka_unit_test(test_htj2k),     cmocka_unit_test(test_dwa_without_the_module), cmocka_unit_test(test_line_orders),
         cmocka_unit_test(test_multipart),
     };
-    return cmocka_run_group_tests(tests, make_module_folder, remove_scratch);
+    return cmocka_run_group_tests(tests, set_up, remove_scratch);
 }

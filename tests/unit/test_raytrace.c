@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "light/alias_table.h"
+#include "modules.h"
 #include "must.h"
 #include "near.h"
 #include "rig.h"
@@ -396,20 +397,9 @@ static void back_ends_agree(void **state)
     close_box(&t);
 }
 
-// The modules lie in the folder above that of the tests.
-static void find_modules(void)
-{
-    char folder[512];
-    ssize_t n = readlink("/proc/self/exe", folder, sizeof folder - 1);
-    folder[n > 0 ? n : 0] = 0;
-    for (int up = 0; up < 2; up++)
-        if (strrchr(folder, '/')) *strrchr(folder, '/') = 0;
-    setenv("SSDO_PLUGIN_DIR", folder, 0);
-}
-
 int main(void)
 {
-    find_modules();
+    use_built_modules();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(corner_is_the_closed_form),
         cmocka_unit_test(foreign_mesh_is_refused),
