@@ -116,7 +116,7 @@ static bool light(pass_context *c, error *e)
 static bool run(pass_context *c, error *e)
 {
     for (int k = 0; k < images(c); k++)
-        if (!pass_make_image(c, IMAGE_SH_0 + k, e)) return false;
+        if (!pass_make_image(c, (image_id)(IMAGE_SH_0 + k), e)) return false;
     if (!pass_make_image(c, IMAGE_OCCLUSION, e)) return false;
     if (c->want_radiance && !pass_make_image(c, IMAGE_RADIANCE, e)) return false;
     if (c->want_visibility && !pass_make_image(c, IMAGE_VISIBILITY, e)) return false;
