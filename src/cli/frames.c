@@ -153,8 +153,9 @@ static size_t place_at(const char *p, int *width)
     }
     if (p[0] == '%') {
         n = 1 + strspn(p + 1, "0123456789");
-        *width = atoi(p + 1);
-        return p[n] == 'd' && *width < 20 ? n + 1 : 0;
+        long digits = strtol(p + 1, NULL, 10);
+        *width = (int)(digits < 20 ? digits : 0);
+        return p[n] == 'd' && digits < 20 ? n + 1 : 0;
     }
     if (p[0] == '$' && p[1] == 'F') {
         n = 2 + (isdigit((unsigned char)p[2]) != 0);
