@@ -149,9 +149,11 @@ void *dlsym(void *handle, const char *name)
 }
 C
 if ${CC:-gcc} -shared -fPIC -O1 -o "$dir/fault.so" "$dir/fault.c" -ldl 2>"$dir/err"; then
+    # A sanitizer looks for its own names after the library whose dlsym it gets, so it comes first.
+    sanitizer=$(ldd "$SSDO" | sed -n 's/.*=> \(.*lib[at]san[^ ]*\).*/\1/p')
     inject() { # FAULT CODE TEXT
         rm -f "$dir/out.exr"
-        SSDO_FAULT=$1 SSDO_FAULT_AT=${4:-1} LD_PRELOAD="$dir/fault.so" "$SSDO" $args -o "$dir/out.exr" 2>"$dir/err" >/dev/null
+        SSDO_FAULT=$1 SSDO_FAULT_AT=${4:-1} LD_PRELOAD="$sanitizer $dir/fault.so" "$SSDO" $args -o "$dir/out.exr" 2>"$dir/err" >/dev/null
         code=$?
         failed "$2" "$3" "injected: $1"
         [ ! -e "$dir/out.exr" ] && [ -z "$(find "$dir" -name '.*tmp')" ] || die "injected $1: something is left"
@@ -166,7 +168,7 @@ if ${CC:-gcc} -shared -fPIC -O1 -o "$dir/fault.so" "$dir/fault.c" -ldl 2>"$dir/e
     # At any question for GL's errors. Where the answer only means that a cached program does not fit, the run completes.
     for n in 1 2 4 6 7 8 9 10 12; do
         rm -f "$dir/out.exr"
-        SSDO_FAULT=memory SSDO_FAULT_AT=$n LD_PRELOAD="$dir/fault.so" "$SSDO" $args -o "$dir/out.exr" 2>"$dir/err" >/dev/null
+        SSDO_FAULT=memory SSDO_FAULT_AT=$n LD_PRELOAD="$sanitizer $dir/fault.so" "$SSDO" $args -o "$dir/out.exr" 2>"$dir/err" >/dev/null
         code=$?
         [ $code = 0 ] && whole "$dir/out.exr" "GL out of memory at $n" && continue
         failed 6 "memory" "GL out of memory at $n"
