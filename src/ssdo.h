@@ -110,8 +110,8 @@ typedef struct ssdo_layer {
     const float *pixels; // channels of a pixel side by side, rows from the top without gaps, linear; the frame's
 } ssdo_layer;
 
-// NULL when memory is short, or where the OpenEXR library is not the one that the headers were of. `setup` may be NULL. Nothing
-// is opened yet.
+// NULL when memory is short, setup->size is wrong, or the OpenEXR library is of another version than the headers were. `setup`
+// may be NULL. Nothing is opened yet.
 SSDO_EXPORT ssdo_context *ssdo_create(const ssdo_setup *setup);
 SSDO_EXPORT void ssdo_destroy(ssdo_context *c); // NULL is allowed
 
@@ -139,7 +139,8 @@ SSDO_EXPORT int ssdo_find_layer(const ssdo_frame *f, const char *name, const cha
 // channels.
 SSDO_EXPORT ssdo_status ssdo_copy_layer(const ssdo_frame *f, int index, float *to, size_t count);
 
-// Writes the file that the program would write of this frame: whole or not at all. Once for each frame.
+// Writes the file that the program would write of this frame: whole or not at all. Once for each frame, by the context that
+// filtered it.
 SSDO_EXPORT ssdo_status ssdo_write(ssdo_context *c, ssdo_frame *f, const char *path);
 SSDO_EXPORT void ssdo_free_frame(ssdo_frame *f); // NULL is allowed; outlives its context
 

@@ -9,7 +9,7 @@
 bool exrio_library_check(error *e);
 
 // Whether the library that the program was compiled for decodes this compression itself. DWA it does from 3.4 on: 3.1 cannot, and
-// 3.2 and 3.3 left it to the C++ library's users to try.
+// with 3.2 and 3.3 it was not tried.
 bool exrio_library_decodes(int compression);
 
 #endif

@@ -99,7 +99,7 @@ static bool same_device(const options *a, const options *b)
 
 static bool open_for(ssdo_context *c, const options *o)
 {
-    if (c->opened && !same_device(c->job.o, o)) close_device(c);
+    if (c->opened && !same_device(&c->opened_for, o)) close_device(c);
     if (c->opened) {
         job_forget_light(&c->job); // which may be another's, or turned as another renderer has it
         c->job.o = o;
@@ -111,6 +111,7 @@ static bool open_for(ssdo_context *c, const options *o)
         return false;
     }
     c->job.stop = &c->stop;
+    c->opened_for = *o;
     return c->opened = true;
 }
 
@@ -151,7 +152,7 @@ ssdo_status ssdo_filter(ssdo_context *c, const ssdo_input *input, ssdo_frame **f
     c->stop = 0;
     ssdo_frame *f = mem_zero(1, sizeof *f, &c->e);
     filtering d = {.c = c, .input = input, .frame = f};
-    if (f) f->o = c->o, f->memory = -1;
+    if (f) f->maker = c, f->o = c->o, f->memory = -1;
     if (f && !worker_run(&c->worker, run_filter, &d)) {
         ssdo_free_frame(f);
         err_set(&c->e, ERR_MEMORY, NULL, NULL, "no thread can be started");
@@ -167,6 +168,9 @@ const char *ssdo_message(const ssdo_context *c) { return c->message; }
 ssdo_status ssdo_write(ssdo_context *c, ssdo_frame *f, const char *path)
 {
     begin_call(c);
+    if (f->maker != c)
+        return end_call(
+            c, err_set(&c->e, ERR_USAGE, NULL, NULL, "the frame is another context's; write it by the one that filtered it"));
     job j = {.o = &f->o, .log = &c->log, .threads = f->o.threads > 0 ? f->o.threads : threads_default()};
     strcpy(j.g.device, f->device);
     return end_call(c, frame_write(&j, &f->result, path, &c->e));

@@ -24,14 +24,16 @@ struct ssdo_context {
     options o;         // what they say
     log_t log;
     job job;
-    bool opened;       // job is
-    volatile int stop; // by ssdo_stop
+    bool opened;        // job is,
+    options opened_for; // on the device that these ask for
+    volatile int stop;  // by ssdo_stop
     error e;
     char message[ERROR_TEXT];
 };
 
 struct ssdo_frame {
-    options o; // of the time when it was filtered
+    const ssdo_context *maker; // never looked into: the context may be gone
+    options o;                 // of the time when it was filtered
     frame_result result;
     char device[sizeof(((gpu *)0)->device)]; // that filtered it
     int memory;                              // descriptor of a G-buffer in memory, or -1

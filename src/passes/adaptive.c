@@ -146,7 +146,6 @@ static bool conclude(work *w, error *e)
     pass_context *c = w->c;
     gpu_image t = c->image[IMAGE_OCCLUSION]; // every tile's result is of its last round
     c->image[IMAGE_OCCLUSION] = w->result, w->result = t;
-    c->denoised = true;
     if (!c->want_error) return true;
     const pass_call call = {
         .program = "root",

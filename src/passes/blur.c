@@ -75,7 +75,6 @@ bool pass_denoise(pass_context *c, error *e)
     bool ok = pass_make(c, &moments, GL_RGBA32F, 0.0f, e) && pass_make(c, &result, GL_R32F, 1.0f, e) &&
               pass_denoise_across(c, &d, e) && pass_denoise_down(c, &d, e);
     if (ok) swap(&c->image[IMAGE_OCCLUSION], &result);
-    c->denoised = ok;
     gpu_image_free(&moments);
     gpu_image_free(&result);
     return ok;

@@ -109,7 +109,6 @@ typedef struct pass_context {
     gpu_image image[IMAGE_COUNT]; // id 0: the frame has none, or its pass has not run
 
     bool suns_apart;  // radiance and visibility lack the suns of `sunless`: pass_suns adds them after the filter
-    bool denoised;    // the occlusion has been filtered by its own noise, or by the rounds
     plane_set planes; // found by the pass that uses them
     adaptive_sampling adaptive;
 

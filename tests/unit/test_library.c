@@ -170,6 +170,26 @@ static void settings_take_effect_and_back(void **state)
     ssdo_destroy(c);
 }
 
+// Also after a frame: the device is opened anew when the settings ask for another.
+static void settings_choose_the_device(void **state)
+{
+    (void)state;
+    ssdo_context *c = open_context(), *other = open_context();
+    ssdo_frame *f = filter_file(c), *none = NULL;
+    const ssdo_input in = {sizeof in, .files = (const char *const[]){SAMPLE}, .file_count = 1};
+    set(c, "device", "31");
+    assert_int_equal(ssdo_filter(c, &in, &none), SSDO_NO_GL);
+    assert_non_null(strstr(ssdo_message(c), "device 31"));
+    set(c, "device", NULL);
+    ssdo_frame *again = filter_file(c);
+    assert_same(f, again);
+    assert_int_equal(ssdo_write(other, f, "nobody.exr"), SSDO_USAGE); // whose settings may be gone
+    ssdo_free_frame(f);
+    ssdo_free_frame(again);
+    ssdo_destroy(c);
+    ssdo_destroy(other);
+}
+
 static void wrong_input_is_said(void **state)
 {
     (void)state;
@@ -234,11 +254,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_of_the_process_changes), // first, for others may set what it looks for
-        cmocka_unit_test(memory_is_read_as_a_file_is),
-        cmocka_unit_test(eight_contexts_in_eight_threads),
-        cmocka_unit_test(settings_are_the_programs_options),
-        cmocka_unit_test(settings_take_effect_and_back),
-        cmocka_unit_test(wrong_input_is_said),
+        cmocka_unit_test(memory_is_read_as_a_file_is),       cmocka_unit_test(eight_contexts_in_eight_threads),
+        cmocka_unit_test(settings_are_the_programs_options), cmocka_unit_test(settings_take_effect_and_back),
+        cmocka_unit_test(settings_choose_the_device),        cmocka_unit_test(wrong_input_is_said),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
