@@ -63,6 +63,8 @@ from=bands3 technique relit radiance --env "$dir/sky_sun.exr" --from-sh --sh-ban
 technique hemisphere occlusion,radiance $env --method hemisphere
 technique hbao occlusion,radiance $env --method hbao
 technique bias occlusion,radiance $env --method hbao --angle-bias 30
+# A method that makes no light of its own has its occlusion for visibility.
+technique visible composite $env --method hbao --mode visibility
 technique alchemy occlusion,radiance $env --method alchemy
 technique gtao occlusion,radiance,bent $env --method gtao
 technique gtao-error occlusion,error,bent --method gtao --error 0.02 --samples 512
