@@ -51,8 +51,12 @@ compare() { # TURN
         [ $((turn % jobs)) = "$1" ] || continue
         [ -e "$kept/$name.exr" ] || [ -e "$kept/$name.failed" ] || run "$old" "$kept" "$name" "$arguments"
         run "$new" "$made" "$name" "$arguments"
-        if [ -e "$kept/$name.failed" ] || [ -e "$made/$name.failed" ]; then
-            difference=$(cat "$kept/$name.failed" "$made/$name.failed" 2>&1 | head -2)
+        if [ -e "$kept/$name.failed" ] && [ -e "$made/$name.failed" ]; then
+            difference=$(cmp -s "$kept/$name.failed" "$made/$name.failed" || echo "both fail, in other words")
+        elif [ -e "$kept/$name.failed" ]; then
+            difference="OLD alone fails: $(head -1 "$kept/$name.failed")"
+        elif [ -e "$made/$name.failed" ]; then
+            difference="NEW alone fails: $(head -1 "$made/$name.failed")"
         else
             difference=$(python3 tests/compare_builds.py "$kept/$name.exr" "$made/$name.exr" 2>&1)
         fi
