@@ -17,7 +17,7 @@ static bool uuid_begins(const unsigned char uuid[16], const char *text, size_t l
     size_t digit = 0;
     for (size_t i = 4; i < length; i++) {
         if (text[i] == '-') continue;
-        unsigned nibble = digit < 32 ? uuid[digit / 2] >> (digit % 2 ? 0 : 4) & 15u : 16u;
+        unsigned nibble = digit < 32 ? (unsigned)(uuid[digit / 2] >> (digit % 2 ? 0 : 4)) & 15u : 16u;
         if (nibble > 15u || tolower((unsigned char)text[i]) != "0123456789abcdef"[nibble]) return false;
         digit++;
     }
