@@ -113,6 +113,10 @@ $(BUILD)/lib/libssdo.a: $(OBJ)
 	@mkdir -p $(@D) && rm -f $@
 	@ld -r -o $(@D)/ssdo.o $^ && objcopy --localize-hidden $(@D)/ssdo.o && ar rcsD $@ $(@D)/ssdo.o && rm $(@D)/ssdo.o
 
+# A compiler's warnings stay in a file beside what it made, so that one build serves the program, the tests and `make lint`.
+KEEP_SAID = 2>$@.said; code=$$?; cat $@.said >&2; exit $$code
+NO_WARNINGS = ! find $(BUILD)/src $(BUILD)/tests $(BUILD)/*.said -name '*.said' -size +0 -exec cat {} + 2>/dev/null | grep .
+
 # Objects are made again when the compiler or its flags change.
 FLAGS     = $(CC) -fPIC $(CFLAGS) $(SANFLAGS) $(EXTRA_CFLAGS)
 $(BUILD)/flags: always
@@ -121,7 +125,7 @@ $(BUILD)/flags: always
 $(BUILD)/%.o: %.c $(BUILD)/flags | deps-stamp
 	@mkdir -p $(@D)
 	@echo "  cc   $<"
-	$(Q)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
+	$(Q)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $< $(KEEP_SAID)
 
 # What names the version is compiled again when it changes, and nothing else is.
 VERSIONED := $(patsubst %.c,$(BUILD)/%.o,$(shell grep -l SSDO_VERSION src/*.c src/*/*.c))
@@ -136,7 +140,7 @@ $(BUILD)/shaders.c: $(GLSL) shaders/embed.sh
 	@mkdir -p $(@D)
 	$(Q)sh shaders/embed.sh shaders $(GLSL) >$@.tmp && mv $@.tmp $@
 $(BUILD)/shaders.o: $(BUILD)/shaders.c src/gpu/shaders.h $(BUILD)/flags
-	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $<
+	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $< $(KEEP_SAID)
 
 # The rows of all methods, of which the default one is named here.
 METHODS  := $(wildcard src/passes/*.c)
@@ -144,13 +148,13 @@ $(BUILD)/methods.c: $(METHODS) src/passes/methods.sh
 	@mkdir -p $(@D)
 	$(Q)LC_ALL=C sh src/passes/methods.sh arc $(sort $(METHODS)) >$@.tmp && mv $@.tmp $@
 $(BUILD)/methods.o: $(BUILD)/methods.c src/passes/method.h
-	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $<
+	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $< $(KEEP_SAID)
 
 $(BUILD)/decides.c: $(DECIDES) src/pipeline/decides.sh
 	@mkdir -p $(@D)
 	$(Q)LC_ALL=C sh src/pipeline/decides.sh $(DECIDES) >$@.tmp && mv $@.tmp $@
 $(BUILD)/decides.o: $(BUILD)/decides.c src/pipeline/decides.h $(BUILD)/flags
-	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $<
+	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $< $(KEEP_SAID)
 
 # OpenImageIO, OpenColorIO and Embree live in modules of their own, opened on demand: linking OpenImageIO costs every run 290 ms.
 $(BUILD)/ssdo-images.so: LIBRARY = $$(pkg-config --cflags --libs OpenImageIO) $(call RPATHS,OpenImageIO)
@@ -160,7 +164,7 @@ $(BUILD)/ssdo-trace.so: src/plugin/embree.h
 $(BUILD)/ssdo-%.so: src/plugin/%_shim.cpp src/plugin/%_abi.h | deps-stamp
 	@mkdir -p $(@D)
 	@echo "  c++  $@"
-	$(Q)$(CXX) $(ALL_CXXFLAGS) -shared -o $@ $< $(LIBRARY) $(LDFLAGS)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -shared -o $@ $< $(LIBRARY) $(LDFLAGS) $(KEEP_SAID)
 
 $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(TESTLIB) $(BUILD)/rooms.a
 	@mkdir -p $(@D)
@@ -179,7 +183,7 @@ $(BUILD)/tests/fuzz_%: $(BUILD)/tests/fuzz/fuzz_%.o $(BUILD)/tests/fuzz/replay.o
 FAULT    := $(BUILD)/tests/fault.so
 $(FAULT): tests/hard/fault.c
 	@mkdir -p $(@D)
-	$(Q)$(CC) -std=gnu17 -D_GNU_SOURCE $(WARN) -Wno-pedantic -O1 -g -shared -fPIC -o $@ $< -ldl
+	$(Q)$(CC) -std=gnu17 -D_GNU_SOURCE $(WARN) -Wno-pedantic -O1 -g -shared -fPIC -o $@ $< -ldl $(KEEP_SAID)
 
 # Order-only: checks once per make run that the packages of the build are there.
 .PHONY: deps-stamp
@@ -192,15 +196,17 @@ demo: deps
 	@$(MAKE) $(JOBS) --no-print-directory all
 	@sh samples/demo.sh $(BIN) $(BUILD)
 
+# The lint is one of the tests, so that it fills what the others leave idle.
 check: deps-check
-	@$(MAKE) $(JOBS) --no-print-directory all lint unit
-	@sh tests/run.sh $(BUILD) $(UNIT) $(HARD) $(REPLAY)
+	@$(MAKE) $(JOBS) --no-print-directory all unit $(BUILD)/shaders.c
+	@sh tests/run.sh $(BUILD) tests/lint.sh $(UNIT) $(HARD) $(REPLAY)
 
 # The build without a warning and the unit tests that take a moment: tests/fast.txt.
 FAST     := $(addprefix $(BUILD)/tests/,$(shell grep -v '^\#' tests/fast.txt))
 .PHONY: check-fast
 check-fast: deps-check
-	@$(MAKE) $(JOBS) --no-print-directory EXTRA_CFLAGS=-Werror all $(FAST)
+	@$(MAKE) $(JOBS) --no-print-directory all $(FAST)
+	@$(NO_WARNINGS)
 	@SSDO_SCRIPTS= sh tests/run.sh $(BUILD) $(FAST)
 
 # The hard cases, all of them (tests/hard): `make check` runs a subset.
@@ -384,17 +390,15 @@ mutate: $(patsubst %,$(BUILD)/tests/test_%,bias convergence arc s3ho)
 	@sh tests/bench/mutate.sh $(BUILD) $(WORD)
 
 lint: deps-check
-	@$(MAKE) $(JOBS) --no-print-directory $(LISTS)
+	@$(MAKE) $(JOBS) --no-print-directory all unit
 	@sh tests/lint.sh $(BUILD)
-	@$(MAKE) $(JOBS) --no-print-directory BUILD=$(BUILD)/lint EXTRA_CFLAGS=-Werror all
-	@! command -v clang >/dev/null || $(MAKE) $(JOBS) --no-print-directory lint-clang
 
+.PHONY: lint-warnings lint-clang tidy
+lint-warnings: ; @$(NO_WARNINGS)
 # The same warnings by clang, where there is one: it reads the sources and makes nothing.
-.PHONY: lint-clang tidy
 lint-clang tidy: ALL_CFLAGS += -DSSDO_VERSION='"$(VERSION)"'
 lint-clang: $(BUILD)/shaders.c
-	@printf '%s\n' src/main.c $(SRC) | xargs -n 8 -P $$(nproc) clang -fsyntax-only -Werror $(ALL_CFLAGS)
-	@echo 'lint: no warning by clang'
+	@! command -v clang >/dev/null || printf '%s\n' src/main.c $(SRC) | xargs -n 8 -P $$(nproc) clang -fsyntax-only -Werror $(ALL_CFLAGS)
 
 # What clang-tidy has to say (.clang-tidy): to be read, not to be obeyed.
 tidy: $(BUILD)/shaders.c

@@ -1,7 +1,9 @@
 #!/bin/sh
-# lint.sh BUILD: formatting and shader validation. Compiler warnings are errors in `make lint`'s second step.
+# lint.sh [BUILD]: what the compilers warn of, formatting, the tree's own rules and every shader program. BUILD, by default the folder
+# of $SSDO, holds a whole build.
 set -eu
-out=$1/lint
+build=${1:-$(dirname "$SSDO")}
+out=$build/lint
 mkdir -p "$out"
 # The format is that of clang-format 14; newer ones agree on most of it, and where they do not, the code is not at fault.
 sources=$(find src tests -name '*.[ch]' -o -name '*.cpp' -path 'src/*')
@@ -12,6 +14,10 @@ if [ "$formatter" = 14 ]; then
 elif ! clang-format --dry-run -Werror $sources >"$out/format" 2>&1; then
     format="formatting not judged: it is checked by clang-format 14, and $formatter would change $(grep -c 'code should be' "$out/format") places"
 fi
+
+# What gcc said is in the build; clang reads the sources now.
+make -s BUILD="$build" lint-warnings || { echo 'lint: the build has warnings' >&2; exit 1; }
+make -s BUILD="$build" lint-clang
 
 # The tree's own rules (src/README.md, "Habits"): lengths, nothing cited that a reader does not have, no files that include each other.
 refuse() { [ -z "$2" ] || { printf 'lint: %s:\n%s\n' "$1" "$2" >&2; exit 1; }; }
@@ -35,7 +41,7 @@ done
 count=0
 for read in image texture; do
     rm -rf "$out/$read" && mkdir -p "$out/$read"
-    "$1/tests/list_variants" files "$out/$read" "$read" 2>"$out/count"
+    "$build/tests/list_variants" files "$out/$read" "$read" 2>"$out/count"
     find "$out/$read" -name '*.comp' -o -name '*.frag' | xargs -n 100 glslangValidator >"$out/log" ||
         { echo "lint: $read:" >&2; grep -B 1 -A 3 ERROR "$out/log" >&2; exit 1; }
     count=$((count + $(cat "$out/count")))
