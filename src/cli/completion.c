@@ -118,9 +118,9 @@ static void print_zsh(FILE *to, const option_values *values)
     fprintf(to, "    '*:input:_files -g \"*.exr\"'\n");
 }
 
-void completion_print(FILE *to, const char *shell, const option_values *values)
+void completion_print(FILE *to, bool zsh, const option_values *values)
 {
-    if (strcmp(shell, "zsh") == 0)
+    if (zsh)
         print_zsh(to, values);
     else
         print_bash(to, values);

@@ -2,11 +2,12 @@
 #ifndef SSDO_CLI_COMPLETION_H
 #define SSDO_CLI_COMPLETION_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 #include "cli/options_table.h"
 
-// shell: "bash" or "zsh". The lists of values end at a NULL option.
-void completion_print(FILE *to, const char *shell, const option_values *values);
+// For zsh, or for bash. The lists of values end at a NULL option.
+void completion_print(FILE *to, bool zsh, const option_values *values);
 
 #endif

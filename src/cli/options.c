@@ -28,11 +28,10 @@ void options_defaults(options *o)
         .vpl_count = 512,
         .sh_bands = 2,
         .env_scale = 1,
-        .env_frame = "world",
         .env_lod = -1,
         .mode = MODE_RADIANCE,
         .amount = 1,
-        .multiply = "diffuse",
+        .normal_encoding = NORMAL_AUTO,
         .prefix = "",
         .device = -1,
         .preview_every = 1,
@@ -185,9 +184,7 @@ static bool set_word(const option_row *row, const char *text, void *field, error
     if (!word) return fail_value(row, text, e);
     int i = (int)word->value;
     bool b = i != 0;
-    if (row->kind == OPT_CHOICE)
-        memcpy(field, &word->text, sizeof word->text);
-    else if (row->kind == OPT_SWITCH)
+    if (row->kind == OPT_SWITCH)
         memcpy(field, &b, sizeof b);
     else
         memcpy(field, &i, sizeof i);
@@ -204,7 +201,6 @@ static bool set_value(const option_row *row, const char *text, options *o, error
         return true;
     case OPT_SWITCH:
     case OPT_ENUM:
-    case OPT_CHOICE:
         return set_word(row, text, field, e);
     case OPT_TEXT:
     case OPT_PATH:
@@ -299,7 +295,9 @@ static const char *next_value(walk *w, const option_row *row)
 {
     const char *value = w->at + 1 < w->argc ? w->argv[w->at + 1] : NULL;
     if (!value || (strncmp(value, "--", 2) == 0 && find_name(value + 2, strcspn(value + 2, "=")))) {
-        err_set(w->e, ERR_USAGE, NULL, NULL, "--%s needs a value: --%s %s; " SEE_HELP, row->name, row->name, row->argument);
+        char buf[OPTION_ARGUMENT];
+        err_set(w->e, ERR_USAGE, NULL, NULL, "--%s needs a value: --%s %s; " SEE_HELP, row->name, row->name,
+                option_argument(row, buf, sizeof buf));
         return NULL;
     }
     w->at++;
@@ -388,9 +386,9 @@ static bool check_together(const options *o, error *e)
 }
 
 // The two parameter sets of the Alchemy chapter, as defaults: what is typed, before or after, counts.
-static void preset_defaults(options *o, const char *preset)
+static void preset_defaults(options *o, preset p)
 {
-    bool scene = strcmp(preset, "scene") == 0;
+    bool scene = p == PRESET_SCENE;
     options_defaults(o);
     o->method = "alchemy";
     o->radius_unit = RADIUS_WORLD;
@@ -423,7 +421,7 @@ bool options_parse(int argc, char **argv, options *o, error *e)
 {
     options_defaults(o);
     if (!walk_arguments(argc, argv, o, e)) return false;
-    if (o->preset) {
+    if (o->preset != PRESET_NONE) {
         preset_defaults(o, o->preset);
         if (!walk_arguments(argc, argv, o, e)) return false;
     }

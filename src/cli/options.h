@@ -7,6 +7,7 @@
 
 #include "base/digest.h"
 #include "base/error.h"
+#include "base/words.h"
 
 enum { OPT_MAX_INPUTS = 32 };
 
@@ -20,6 +21,24 @@ typedef enum progress_form {
     PROGRESS_BAR // what auto becomes at a terminal; no word of the option
 } progress_form;
 typedef enum compose_mode { MODE_RADIANCE, MODE_VISIBILITY } compose_mode;
+typedef enum environment_frame { FRAME_WORLD, FRAME_CAMERA } environment_frame; // what the environment is fixed to
+typedef enum multiply_onto { MULTIPLY_DIFFUSE, MULTIPLY_ALL } multiply_onto;
+typedef enum preset { PRESET_NONE, PRESET_SCENE, PRESET_CLOSEUP } preset;
+typedef enum output_compression {
+    COMPRESS_AS_INPUT,
+    COMPRESS_NONE,
+    COMPRESS_RLE,
+    COMPRESS_ZIPS,
+    COMPRESS_ZIP,
+    COMPRESS_PIZ
+} output_compression;
+typedef enum completion_part {
+    COMPLETE_NOTHING,
+    COMPLETE_BASH,
+    COMPLETE_ZSH,
+    COMPLETE_METHODS_MAN,
+    COMPLETE_METHODS_MARKDOWN
+} completion_part;
 
 // What the user asked for. Strings point into argv or to constants; NULL means "not given". Defaults: options_defaults().
 typedef struct options {
@@ -60,26 +79,29 @@ typedef struct options {
     double env_rotate; // degrees
     double env_scale;
     const char *env_colorspace, *albedo_colorspace, *ocio;
-    const char *env_frame; // world, camera
-    double env_lod;        // < 0 auto
+    environment_frame env_frame;
+    double env_lod; // < 0 auto
     compose_mode mode;
     double amount;
     double depthmask_strength;
-    const char *multiply; // diffuse, all
-    const char *preset;   // scene, closeup; NULL = none
+    multiply_onto multiply;
+    preset preset;
 
     const char *role_names[16]; // --position ... --emission, indexed by gbuffer/resolve.h's role
-    const char *depth_kind, *albedo_kind, *view_layer;
-    const char *normal_space, *normal_encoding; // NULL = found
-    double depth_range[2];                      // near, far; far 0 = not given
-    double fov, ortho;                          // 0 = not given
+    const char *view_layer;
+    depth_kind depth_kind; // of this and the next three auto or unknown: to be found
+    albedo_kind albedo_kind;
+    pass_space normal_space;
+    normal_encoding normal_encoding;
+    double depth_range[2]; // near, far; far 0 = not given
+    double fov, ortho;     // 0 = not given
     const char *camera_file;
 
     bool keep_none;
-    bool multipart;          // --layout: the input's parts as they are stored, ours in a part of their own
-    bool main_composite;     // --main: R G B are the composite
-    const char *prefix;      // "" by default; put before our layer names
-    const char *compression; // NULL = as the input
+    bool multipart;      // --layout: the input's parts as they are stored, ours in a part of their own
+    bool main_composite; // --main: R G B are the composite
+    const char *prefix;  // "" by default; put before our layer names
+    output_compression compression;
     bool output_float;
 
     const char *frames; // --frames; NULL = every existing file of the pattern
@@ -97,7 +119,7 @@ typedef struct options {
     bool explain, explain_json; // --explain, --explain=json
     bool strict, verify;
     bool verbose, quiet, help, version;
-    const char *completion; // print this part: bash, zsh, methods.1, methods.md
+    completion_part completion; // to be printed instead
 } options;
 
 void options_defaults(options *o);

@@ -27,11 +27,11 @@ static int print_wrapped(FILE *to, int at, const char *text)
 
 static void print_help_row(FILE *to, const option_row *row, const option_values *more)
 {
-    char left[96], fallback[256];
+    char left[192], fallback[256], buf[OPTION_ARGUMENT];
     char letter[8] = "    ";
+    const char *argument = option_argument(row, buf, sizeof buf);
     if (row->letter) snprintf(letter, sizeof letter, "-%c, ", row->letter);
-    int n = snprintf(left, sizeof left, "  %s--%s%s%s", letter, row->name, row->argument ? " " : "",
-                     row->argument ? row->argument : "");
+    int n = snprintf(left, sizeof left, "  %s--%s%s%s", letter, row->name, *argument ? " " : "", argument);
     fprintf(to, "%s", left);
     if (n >= HELP_COLUMN) {
         fprintf(to, "\n");
@@ -112,10 +112,12 @@ static void print_mdoc_name(FILE *to, const char *name)
 
 static void print_man_row(FILE *to, const option_row *row)
 {
+    char buf[OPTION_ARGUMENT];
+    const char *argument = option_argument(row, buf, sizeof buf);
     fprintf(to, ".It ");
     if (row->letter) fprintf(to, "Fl %c , ", row->letter);
     print_mdoc_name(to, row->name);
-    if (row->argument) fprintf(to, " Ar %s", row->argument);
+    if (*argument) fprintf(to, " Ar %s", argument);
     fprintf(to, "\n");
     print_mdoc(to, 0, row->help);
     if (row->fallback) print_mdoc(to, fprintf(to, "Default:"), row->fallback);

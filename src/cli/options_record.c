@@ -62,13 +62,6 @@ static void number_text(double v, char *buf, size_t size)
     }
 }
 
-static const char *word_for(const option_row *row, double value)
-{
-    for (const option_word *w = row->words; w && w->text; w++)
-        if (w->value == value) return w->text;
-    return NULL;
-}
-
 // The value of a row as text, or NULL when it has none. buf is scratch.
 static const char *value_text(const option_row *row, const options *o, char *buf, size_t size)
 {
@@ -91,7 +84,7 @@ static const char *value_text(const option_row *row, const options *o, char *buf
         number_text(range[1], buf + n + 1, size - n - 1);
         return buf;
     }
-    if (row->kind == OPT_CHOICE || row->kind == OPT_TEXT || row->kind == OPT_PATH) {
+    if (row->kind == OPT_TEXT || row->kind == OPT_PATH) {
         const char *text;
         memcpy(&text, field, sizeof text);
         const char *slash = text && row->kind == OPT_PATH ? strrchr(text, '/') : NULL;
@@ -106,8 +99,8 @@ static const char *value_text(const option_row *row, const options *o, char *buf
         memcpy(&i, field, sizeof i);
         v = i;
     }
-    const char *word = word_for(row, v);
-    if (word) return word;
+    const char *word = word_of(row->words, v);
+    if (word || row->kind == OPT_ENUM) return word; // none: not given
     number_text(v, buf, size);
     return buf;
 }

@@ -10,11 +10,12 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "base/words.h"
+
 typedef enum option_kind {
     OPT_FLAG,   // bool, no argument: becomes true; with words, one may follow "=" and sets a second bool
     OPT_SWITCH, // bool, one of the words
     OPT_ENUM,   // int or enum, one of the words
-    OPT_CHOICE, // const char *, one of the words
     OPT_TEXT,   // const char *, any text
     OPT_PATH,   // const char *, a file name; the header record keeps only its base name
     OPT_INT,    // int in [min, max], or one of the words
@@ -35,16 +36,10 @@ typedef enum option_group {
     GROUP_COUNT
 } option_group;
 
-// A word that stands for a value. For OPT_CHOICE the word itself is the value.
-typedef struct option_word {
-    const char *text;
-    double value;
-} option_word;
-
 typedef struct option_row {
     const char *name;         // without dashes
     char letter;              // short form, 0 for none
-    const char *argument;     // as shown in the help; NULL for a flag
+    const char *argument;     // as shown in the help; NULL for a flag and for one that is a word of the list
     option_kind kind;         //
     size_t offset;            // of the field in `options`
     const option_word *words; // ends with a NULL text; NULL for none
@@ -62,6 +57,12 @@ typedef struct option_row {
 
 extern const option_row option_rows[];
 extern const int option_row_count;
+
+enum { OPTION_ARGUMENT = 128 }; // bytes for the words of any option, with bars between
+
+// What follows the option, as shown in the help: the argument, or the words ("radiance|visibility"); "" for a flag. buf is
+// scratch.
+const char *option_argument(const option_row *row, char *buf, size_t size);
 
 // Values of a text option that this room does not know, such as the methods.
 typedef struct option_value {

@@ -16,9 +16,7 @@ typedef struct depth_code {
 // Whether the kind's values mean something only between two distances.
 static inline bool depth_needs_range(depth_kind k) { return k >= DEPTH_LINEAR; }
 
-// The word of --depth-kind, and what it means in a sentence.
-const char *depth_word(depth_kind k);
-depth_kind depth_named(const char *word); // DEPTH_AUTO for a word that is none
+// What it means in a sentence.
 const char *depth_text(depth_kind k);
 
 // Distance; NaN for a value that stands for the background.

@@ -1,26 +1,15 @@
 #include "gbuffer/encoding.h"
 
-#include <string.h>
-
-static const struct {
-    const char *word, *text;
-} encodings[NORMAL_ENCODINGS] = {
-    [NORMAL_SIGNED] = {"signed", "as they are"},
-    [NORMAL_UNORM] = {"unorm", "0..1 encoded"},
-    [NORMAL_GAMMA] = {"unorm-gamma", "0..1 encoded through gamma 2.2"},
-    [NORMAL_SRGB] = {"unorm-srgb", "0..1 encoded through the sRGB curve"},
-    [NORMAL_DEGAMMA] = {"unorm-degamma", "0..1 encoded, then linearised by gamma 2.2"},
-    [NORMAL_DESRGB] = {"unorm-desrgb", "0..1 encoded, then linearised by the sRGB curve"},
+static const char *const texts[NORMAL_ENCODINGS] = {
+    [NORMAL_SIGNED] = "as they are",
+    [NORMAL_UNORM] = "0..1 encoded",
+    [NORMAL_GAMMA] = "0..1 encoded through gamma 2.2",
+    [NORMAL_SRGB] = "0..1 encoded through the sRGB curve",
+    [NORMAL_DEGAMMA] = "0..1 encoded, then linearised by gamma 2.2",
+    [NORMAL_DESRGB] = "0..1 encoded, then linearised by the sRGB curve",
 };
 
-const char *encoding_text(normal_encoding e) { return encodings[e].text; }
-
-normal_encoding encoding_named(const char *word)
-{
-    for (int e = 0; word && e < NORMAL_ENCODINGS; e++)
-        if (strcmp(encodings[e].word, word) == 0) return (normal_encoding)e;
-    return NORMAL_AUTO;
-}
+const char *encoding_text(normal_encoding e) { return texts[e]; }
 
 static double linear_of_srgb(double v) { return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4); }
 static double srgb_of_linear(double v) { return v <= 0.0031308 ? v * 12.92 : 1.055 * pow(v, 1.0 / 2.4) - 0.055; }

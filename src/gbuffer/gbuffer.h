@@ -25,11 +25,12 @@ enum gbuffer_need {
 };
 
 typedef struct gbuffer_options {
-    unsigned need;                // gbuffer_need bits; depth and normal are always made
-    const char *camera_file;      // --camera
-    double fov, ortho;            // --fov, --ortho; 0 = not given
-    pass_space normal_space;      // --normal-space; unknown: to be found
-    const char *normal_encoding;  // --normal-encoding; NULL: to be found
+    unsigned need;           // gbuffer_need bits; depth and normal are always made
+    const char *camera_file; // --camera
+    double fov, ortho;       // --fov, --ortho; 0 = not given
+    pass_space normal_space; // --normal-space; unknown: to be found
+    bool encoding_told;      // by --normal-encoding, else it is to be found
+    normal_encoding normal_encoding;
     double depth_near, depth_far; // --depth-range; far 0: the header's, if it has them
     int threads;
 } gbuffer_options;

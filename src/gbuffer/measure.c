@@ -106,12 +106,13 @@ static void settle_kind(build *b, double *scratch)
                    b->depth_code.sign < 0.0 ? "negative " : "", v->reading, v->fit, v->next);
     if (!b->r->depth_told) return;
     if (b->r->depth <= DEPTH_RADIAL && b->r->depth != g->depth_kind) {
-        log_warn(b->log, "depth-kind", "--depth-kind contradicts the positions, which say %s", depth_word(g->depth_kind));
+        log_warn(b->log, "depth-kind", "--depth-kind contradicts the positions, which say %s",
+                 word_of(depth_kind_words, g->depth_kind));
         g->depth_kind = b->r->depth;
         v->doubtful = true;
     } else if (b->r->depth > DEPTH_RADIAL && !b->depth_measured) {
         log_warn(b->log, "depth-kind", "--depth-kind %s contradicts the positions; only the depth's background is used",
-                 depth_word(b->r->depth));
+                 word_of(depth_kind_words, b->r->depth));
         v->doubtful = true;
     }
 }

@@ -332,7 +332,7 @@ bool normals_choose(const build *b, const evidence *v, verdict *list, normal_cho
 {
     *out = (normal_choice){.best = {.to_camera = m3_identity()}, .next = (double)NAN};
     search s = {.b = b, .v = v, .list = list, .space = b->options->normal_space};
-    s.encoding = encoding_named(b->options->normal_encoding);
+    s.encoding = b->options->encoding_told ? b->options->normal_encoding : NORMAL_AUTO;
     s.decoded = mem_zero(NORMAL_ENCODINGS, sizeof *s.decoded, b->e);
     if (!s.decoded) return false;
     for (int e = 0; e < NORMAL_ENCODINGS; e++)

@@ -151,7 +151,7 @@ bool measure_normals(build *b)
     done = normals_choose(b, v, out, &c);
     if (!done) goto out;
     b->normal_to_camera = c.best.to_camera, b->normal_encoding = c.best.encoding;
-    bool told = b->options->normal_space != SPACE_UNKNOWN && b->options->normal_encoding;
+    bool told = b->options->normal_space != SPACE_UNKNOWN && b->options->encoding_told;
     believed = normals_believed(&c, v);
     tell(b, &c, out);
     if (!believed && !told)

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/words.h"
 #include "exr/file.h"
 
 // What a channel (or a group of up to four) is used for.
@@ -29,21 +30,6 @@ const char *role_name(role r); // "position", ...
 typedef struct channel_ref {
     int part, channel;
 } channel_ref; // part -1: absent
-
-// Distance from the camera's plane or from the eye; or, for planar z: 1 / z with 0 behind everything; between near and far 0..1
-// or 1..0; the hyperbolic 0..1 of a z-buffer, or that reversed (1 at near).
-typedef enum depth_kind {
-    DEPTH_AUTO,
-    DEPTH_PLANAR,
-    DEPTH_RADIAL,
-    DEPTH_INVERSE,
-    DEPTH_LINEAR,
-    DEPTH_INVERTED,
-    DEPTH_ZBUFFER,
-    DEPTH_REVERSED,
-    DEPTH_KINDS
-} depth_kind;
-typedef enum albedo_kind { ALBEDO_AUTO, ALBEDO_BASE, ALBEDO_DIFFUSE } albedo_kind;
 
 typedef struct resolve_options {
     const char *names[ROLE_COUNT]; // --position, --normal, ...: layer or channel name; NULL = detect

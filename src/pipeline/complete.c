@@ -1,9 +1,6 @@
 #include "pipeline/complete.h"
 
-#include <string.h>
-
 #include "cli/completion.h"
-#include "cli/options.h"
 #include "passes/method.h"
 #include "pipeline/layers.h"
 
@@ -37,14 +34,14 @@ void help_write(FILE *to)
     options_print_help(to, k.options);
 }
 
-void complete_write(FILE *to, const char *what)
+void complete_write(FILE *to, completion_part part)
 {
     known_values k = {0};
     fill(&k);
-    if (strcmp(what, "methods.1") == 0)
+    if (part == COMPLETE_METHODS_MAN)
         methods_print_man(to);
-    else if (strcmp(what, "methods.md") == 0)
+    else if (part == COMPLETE_METHODS_MARKDOWN)
         methods_print_markdown(to);
     else
-        completion_print(to, what, k.options);
+        completion_print(to, part == COMPLETE_ZSH, k.options);
 }

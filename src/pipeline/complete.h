@@ -4,10 +4,11 @@
 
 #include <stdio.h>
 
+#include "cli/options.h"
+
 void help_write(FILE *to);
 
-// what: "bash" or "zsh", the completion script of this shell; "methods.1" or "methods.md", the table of methods for the manual or
-// for passes/README.md.
-void complete_write(FILE *to, const char *what);
+// The completion script of a shell, or the table of methods for the manual or for passes/README.md.
+void complete_write(FILE *to, completion_part part);
 
 #endif

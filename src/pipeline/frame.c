@@ -42,7 +42,7 @@ static bool prepare_light(job *j, const frame_result *r, error *e)
 
 static bool check_world(const job *j, const frame_result *r, error *e)
 {
-    bool camera_frame = strcmp(j->o->env_frame, "camera") == 0;
+    bool camera_frame = j->o->env_frame == FRAME_CAMERA;
     if (!j->o->env || !r->plan.light || camera_frame || r->gb.camera.has_rotation || r->gb.valid == 0) return true;
     return err_set(e, ERR_INPUT, r->file->path, NULL,
                    "--env needs world directions, and this frame's camera rotation is unknown; use --env-frame camera, --camera "

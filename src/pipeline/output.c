@@ -25,16 +25,12 @@ typedef struct book {
 
 static int compression_of(const options *o, const exrio_part *part)
 {
-    static const struct {
-        const char *name;
-        exr_compression_t value;
-    } table[] = {{"none", EXR_COMPRESSION_NONE},
-                 {"rle", EXR_COMPRESSION_RLE},
-                 {"zips", EXR_COMPRESSION_ZIPS},
-                 {"zip", EXR_COMPRESSION_ZIP},
-                 {"piz", EXR_COMPRESSION_PIZ}};
-    for (size_t i = 0; o->compression && i < sizeof table / sizeof *table; i++)
-        if (strcmp(table[i].name, o->compression) == 0) return (int)table[i].value;
+    static const exr_compression_t values[] = {[COMPRESS_NONE] = EXR_COMPRESSION_NONE,
+                                               [COMPRESS_RLE] = EXR_COMPRESSION_RLE,
+                                               [COMPRESS_ZIPS] = EXR_COMPRESSION_ZIPS,
+                                               [COMPRESS_ZIP] = EXR_COMPRESSION_ZIP,
+                                               [COMPRESS_PIZ] = EXR_COMPRESSION_PIZ};
+    if (o->compression != COMPRESS_AS_INPUT) return (int)values[o->compression];
     // Not every OpenEXR can write those that came after PIZ, and what they lose must not be lost twice.
     return part->compression > (int)EXR_COMPRESSION_PIZ ? EXR_COMPRESSION_ZIP : part->compression;
 }

@@ -58,7 +58,8 @@ bool output_keeps_chunks(const options *o, const exrio_file *file, int part, con
 {
     const exrio_part *in = &file->parts[part];
     if (in->deep) return true;
-    if (!o->multipart || o->keep_none || o->compression || !exrio_part_is_verbatim(in) || file->members) return false;
+    if (!o->multipart || o->keep_none || o->compression != COMPRESS_AS_INPUT || !exrio_part_is_verbatim(in) || file->members)
+        return false;
     for (int v = -1; v < in->view_count; v++) { // of any view, so that the answer is the same for each
         const naming n = {o, file, v < 0 ? NULL : in->views[v]};
         for (int c = 0; c < in->channel_count; c++)

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "gbuffer/depth_code.h"
 #include "pipeline/output.h"
 #include "pipeline/relight.h"
 #include "pipeline/views.h"
@@ -14,10 +13,8 @@
 
 static resolve_options resolve_options_of(const options *o)
 {
-    resolve_options r = {.view_layer = o->view_layer};
+    resolve_options r = {.view_layer = o->view_layer, .depth = o->depth_kind, .albedo = o->albedo_kind};
     for (int i = 0; i < ROLE_COUNT; i++) r.names[i] = o->role_names[i];
-    if (o->depth_kind) r.depth = depth_named(o->depth_kind);
-    if (o->albedo_kind) r.albedo = strcmp(o->albedo_kind, "base") == 0 ? ALBEDO_BASE : ALBEDO_DIFFUSE;
     return r;
 }
 
@@ -67,12 +64,6 @@ static bool convert_albedo(const job *j, frame_result *r, error *e)
     return ok;
 }
 
-static pass_space normal_space_of(const options *o)
-{
-    if (!o->normal_space) return SPACE_UNKNOWN;
-    return strcmp(o->normal_space, "world") == 0 ? SPACE_WORLD : SPACE_CAMERA;
-}
-
 static bool check_doubt(const job *j, const frame_result *r, error *e)
 {
     const char *doubtful = gbuffer_doubt(&r->gb);
@@ -90,7 +81,8 @@ static bool build_view(const job *j, frame_result *r, error *e)
                          .fov = j->o->fov,
                          .ortho = j->o->ortho,
                          .threads = j->threads,
-                         .normal_space = normal_space_of(j->o),
+                         .normal_space = j->o->normal_space,
+                         .encoding_told = j->o->normal_encoding != NORMAL_AUTO,
                          .normal_encoding = j->o->normal_encoding,
                          .depth_near = j->o->depth_range[0],
                          .depth_far = j->o->depth_range[1]};

@@ -56,7 +56,7 @@ bool frame_check_scale(const frame_result *r, error *e)
 static mat3 world_from_camera(const job *j, const frame_result *r)
 {
     static const mat3 up_z = {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}}, up_y = {{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
-    if (strcmp(j->o->env_frame, "camera") == 0) return settings_up_z(j, r) ? up_z : up_y;
+    if (j->o->env_frame == FRAME_CAMERA) return settings_up_z(j, r) ? up_z : up_y;
     return r->gb.camera.has_rotation ? r->gb.camera.world_from_camera : m3_identity();
 }
 
@@ -100,7 +100,7 @@ pass_settings settings_of(const job *j, const frame_result *r, double radius)
         .mesh_axes = o->mesh_axes,
         .amount = o->amount,
         .depthmask_strength = o->depthmask_strength,
-        .multiply_all = strcmp(o->multiply, "all") == 0,
+        .multiply_all = o->multiply == MULTIPLY_ALL,
         .visibility_mode = r->plan.visibility_mode,
         .base_albedo = r->resolution.albedo == ALBEDO_BASE,
         .averaged_albedo = convention_named(r->resolution.convention)->normals_averaged,

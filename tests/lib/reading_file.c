@@ -299,8 +299,9 @@ void reading_name(const reading_case *c, char *buf, size_t size)
     static const char *const encodings[] = {"signed", "unorm", "gamma", "srgb", "degamma", "desrgb"};
     static const char *const filters[] = {"closest", "box", "gauss", "lobes"};
     static const char *const layouts[] = {"XYZ", "RGB", "parts"};
+    const char *depth_name = c->depth == DEPTH_AUTO ? "auto" : word_of(depth_kind_words, c->depth);
     snprintf(buf, size, "%s, turned %g about %c%s, P %s, N %s %s%s flips %d, Z %s%s, %s, %s", scenes[c->scene], c->turn,
              "xyz"[c->axis], c -> mirrored ? " mirrored" : "", spaces[c->position], spaces[c->normal], encodings[c->encoding],
-             c->half_normals ? " half" : "", c->flips, c->negative_depth ? "-" : "", depth_word(c->depth), filters[c->filter],
+             c->half_normals ? " half" : "", c->flips, c->negative_depth ? "-" : "", depth_name, filters[c->filter],
              layouts[c->layout]);
 }

@@ -235,7 +235,7 @@ typedef struct whole {
     frame_result r;
 } whole;
 
-static void run_whole(whole *x, const char *input, double depthmask, const char *multiply)
+static void run_whole(whole *x, const char *input, double depthmask, multiply_onto multiply)
 {
     char output[64];
     error e = {0};
@@ -264,8 +264,8 @@ static void depthmask_scales_the_composite(void **state)
 {
     (void)state;
     static whole plain, masked;
-    run_whole(&plain, "samples/still.exr", 0.0, "diffuse");
-    run_whole(&masked, "samples/still.exr", 3.0, "diffuse");
+    run_whole(&plain, "samples/still.exr", 0.0, MULTIPLY_DIFFUSE);
+    run_whole(&masked, "samples/still.exr", 3.0, MULTIPLY_DIFFUSE);
     int n = plain.r.gb.width * plain.r.gb.height, changed = 0;
     for (int i = 0; i < n; i++) {
         float factor = fmaxf(0.0f, 1.0f + 3.0f * masked.r.layers[LAYER_DEPTHMASK][i]);
@@ -285,8 +285,8 @@ static void occlusion_is_multiplied_onto_all(void **state)
 {
     (void)state;
     static whole diffuse, all;
-    run_whole(&diffuse, "samples/still.exr", 0.0, "diffuse");
-    run_whole(&all, "samples/still.exr", 0.0, "all");
+    run_whole(&diffuse, "samples/still.exr", 0.0, MULTIPLY_DIFFUSE);
+    run_whole(&all, "samples/still.exr", 0.0, MULTIPLY_ALL);
     int n = all.r.gb.width * all.r.gb.height, differ = 0;
     for (int i = 0; i < n; i++)
         for (int k = 0; k < 3; k++) {
