@@ -25,10 +25,10 @@ void cache_tidy(void);
 // the entries lie in a folder of ours under names that do, and each process has a folder of its own in which Mesa sees those that
 // hold (hard links). Before EGL starts, and before the first thread: the environment variables MESA_SHADER_CACHE_DIR and
 // MESA_DISK_CACHE_MULTI_FILE are set, or MESA_SHADER_CACHE_DISABLE where there is no folder or its disk is nearly full, because
-// Mesa would be ended by SIGBUS there. What the user has set stays and is the user's.
+// Mesa would be ended by SIGBUS there. What the user has set stays and is the user's. Nothing is done where it is open already.
 void cache_open_mesa(void);
 
-// After EGL has ended: takes over what Mesa has added, and removes the process's folder.
+// After EGL has ended: takes over what Mesa has added, and leaves the process's folder, empty, to the next process.
 void cache_close_mesa(void);
 
 #endif

@@ -4,6 +4,7 @@
 //   ssdo-filter/mesa-SETTINGS/run-PID-PLACE/           a process's own folder, as MESA_SHADER_CACHE_DIR
 //                             mesa_shader_cache/KE/Y   the same entry as Mesa looks for it
 //                             mesa_shader_cache/index  Mesa's own, a sparse file that it maps
+//   ssdo-filter/mesa-SETTINGS/spare/                   the folders of a run that has ended, empty, for the next one
 #include <errno.h>
 #include <fcntl.h>
 #include <ftw.h>
@@ -23,7 +24,8 @@
 
 enum { KEY = 40, ENTRY_NAME = KEY + 1 + DIGEST_TEXT, MOST_ENTRIES = 1024, OLD_DAYS = 7 };
 
-static const char HEX[] = "0123456789abcdef", MESA[] = "mesa_shader_cache", FOLDER_VARIABLE[] = "MESA_SHADER_CACHE_DIR";
+static const char HEX[] = "0123456789abcdef", MESA[] = "mesa_shader_cache", LEFT[] = "spare",
+                  FOLDER_VARIABLE[] = "MESA_SHADER_CACHE_DIR";
 
 static bool join(char path[CACHE_PATH], const char *folder, const char *name)
 {
@@ -107,6 +109,56 @@ static void remove_if_abandoned(void *context, const char *folder, const char *n
     if (old || process_is_gone(pid, place)) remove_run(path);
 }
 
+// --- the spare folders ---
+//
+// ext4 looks for a free inode beyond all that were freed in the last seconds, so that one run after the other which makes and
+// removes two hundred folders pays more for them than for a small frame.
+
+static void remove_within(void *context, const char *folder, const char *name)
+{
+    char path[CACHE_PATH];
+    (void)context;
+    if (join(path, folder, name)) remove_run(path);
+}
+
+static bool is_folder(const char *path)
+{
+    struct stat st;
+    return lstat(path, &st) == 0 && S_ISDIR(st.st_mode);
+}
+
+static void strip_one(void *context, const char *folder, const char *name)
+{
+    char path[CACHE_PATH];
+    (void)context;
+    if (!join(path, folder, name)) return;
+    if (strlen(name) == 2 && strspn(name, HEX) == 2 && is_folder(path))
+        cache_each(path, remove_within, NULL);
+    else
+        remove_run(path);
+}
+
+// The run's folder: one that was spare, or a new one. Nothing is in it, whatever the spare one held.
+static bool take_folder(const char *store, const char *run, const char *mesa)
+{
+    char spare[CACHE_PATH];
+    bool taken = join(spare, store, LEFT) && rename(spare, run) == 0;
+    if (taken && is_folder(run) && cache_own_folder(run) && is_folder(mesa) && cache_own_folder(mesa)) {
+        cache_each(mesa, strip_one, NULL);
+        return true;
+    }
+    if (taken) remove_run(run);
+    return mkdir(run, 0700) == 0 && mkdir(mesa, 0700) == 0;
+}
+
+// Of processes that end at the same time, one leaves its folder.
+static void leave_folder(const char *store, const char *run, const char *mesa)
+{
+    char spare[CACHE_PATH];
+    cache_each(mesa, strip_one, NULL);
+    if (!join(spare, store, LEFT) || rename(run, spare) != 0) remove_run(run);
+}
+
 // --- before EGL starts ---
 
 // Mesa maps a sparse index and writes into it: on a full disk that ends the process with SIGBUS. So the index gets all its room
@@ -157,7 +209,7 @@ static bool open_run(const char *store, char run[CACHE_PATH])
     run_name(name);
     if (!join(run, store, name) || !join(mesa, run, MESA)) return false;
     remove_run(run); // of a process that had the same number
-    if (mkdir(run, 0700) == 0 && mkdir(mesa, 0700) == 0 && make_index(mesa)) {
+    if (take_folder(store, run, mesa) && make_index(mesa)) {
         cache_each(store, show_entry, mesa);
         return true;
     }
@@ -169,7 +221,7 @@ void cache_open_mesa(void)
 {
     char store[CACHE_PATH], run[CACHE_PATH];
     const char *set = getenv(FOLDER_VARIABLE);
-    if (getenv("MESA_SHADER_CACHE_DISABLE") || (set && !is_own_run(set))) return;
+    if (getenv("MESA_SHADER_CACHE_DISABLE") || (set && (!is_own_run(set) || is_folder(set)))) return; // or open already
     if (!store_folder(store) || !open_run(store, run)) {
         setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
         return;
@@ -209,7 +261,8 @@ void cache_close_mesa(void)
     const char *run = getenv(FOLDER_VARIABLE);
     if (!run || !is_own_run(run) || !join(mesa, run, MESA)) return;
     int n = snprintf(store, sizeof store, "%.*s", (int)(strrchr(run, '/') - run), run);
-    if (n > 0 && n < CACHE_PATH) cache_each(mesa, keep_folder, store);
-    remove_run(run);
+    if (n <= 0 || n >= CACHE_PATH) return;
+    cache_each(mesa, keep_folder, store);
+    leave_folder(store, run, mesa);
     cache_trim(store, is_entry, MOST_ENTRIES);
 }

@@ -68,6 +68,25 @@ for f in $(cat "$dir/programs" "$dir/code"); do odd $i "$f"; i=$((i + 1)); done
 [ $i -ge 14 ] || die "only $i entries"
 same 'pipes, folders, links, devices and other users'"'"' files as entries'
 
+# The folders that a run leaves to the next hold nothing, and what somebody puts there is not taken for machine code.
+spare() { find "$dir/cache/ssdo-filter" -path '*/spare/mesa_shader_cache' "$@"; }
+same warm
+[ -n "$(spare)" ] || die "a run leaves no folders"
+[ -z "$(find "$(spare)" ! -type d)" ] || die "a run leaves something in its folders"
+entries
+other=$(tail -1 "$dir/code")
+while read -r f; do
+    key=$(basename "$f" | cut -c 1-40)
+    to=$(spare)/$(echo "$key" | cut -c 1-2)
+    mkdir -p "$to" && cp "$other" "$to/$(echo "$key" | cut -c 3-)" || die "no folder for $key"
+    other=$f
+done <"$dir/code"
+same 'files in the folders that the last run left'
+rm -rf "$dir"/cache/ssdo-filter/mesa-*/spare && mkdir "$dir/mine" && touch "$dir/mine/file"
+ln -s "$dir/mine" "$(echo "$dir"/cache/ssdo-filter/mesa-*)/spare"
+same 'a link in place of those folders'
+[ "$(ls "$dir/mine")" = file ] || die 'what the link points to is another'
+
 # Nothing is left of processes that were killed, and a folder that goes away under one is nothing to it.
 "$SSDO" -q "$dir/in.exr" -o "$dir/killed.exr" --samples 4096 &
 pid=$!
