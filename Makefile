@@ -359,6 +359,19 @@ $(BENCH_CACHE)/unseen/%/rendered:
 	blender -b --factory-startup -P samples/render.py -- --all --out $(@D) --variant $* --size 480x270 --spp $(UNSEEN_SPP) >$(@D)/log
 	@touch $@
 
+# Places whose light comes from where the frame does not look: the committed scenes of samples/covered, and with COVERED_ALL=1 all
+# six kinds, rendered once for each UNSEEN variant (0: the committed layout). OPTIONS: of the program.
+.PHONY: bench-covered
+bench-covered: deps-bench
+	@$(MAKE) $(JOBS) --no-print-directory all $(BUILD)/tests/bench/score
+	@$(if $(COVERED_ALL),$(MAKE) --no-print-directory $(BENCH_CACHE)/covered/$(UNSEEN)/rendered)
+	@sh tests/bench/covered.sh $(BUILD) $(if $(COVERED_ALL),$(BENCH_CACHE)/covered/$(UNSEEN),samples/covered) $(BUILD)/covered $(OPTIONS)
+
+$(BENCH_CACHE)/covered/%/rendered:
+	@mkdir -p $(@D) && cp samples/sky_*.exr $(@D)
+	blender -b --factory-startup -P samples/render.py -- --covered --out $(@D) --variant $* --spp $(UNSEEN_SPP) >$(@D)/log
+	@touch $@
+
 # The tables and the plot of the last bench and bench-unseen, pasted into tests/bench/RESULTS.md.
 bench-readme: ; @sh tests/bench/readme.sh $(BUILD)
 

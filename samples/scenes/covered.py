@@ -79,7 +79,7 @@ def room(layout):
     """A living room lit through two windows in the left wall; ceiling and one window are in view."""
     width, depth, height = layout.pick(4.6, 4.2, 5.2), layout.pick(5.4, 5.0, 6.0), layout.pick(2.6, 2.5, 2.8)
     near, far = layout.pick(0.8, 0.5, 1.0), layout.pick(3.0, 2.8, 3.3)
-    furnished(layout, width, depth, height, [(near, near + 1.3, 0.9, 2.2), (far, far + 1.4, 0.9, 2.2)])
+    furnished(layout, width, depth, height, [(near, near + 1.1, 0.9, 2.2), (far, far + 1.2, 0.9, 2.2)])
     camera((width - layout.pick(0.7, 0.5, 1.2), 0.35, layout.pick(1.45, 1.3, 1.6)),
            (width * layout.pick(0.42, 0.36, 0.5), depth, layout.pick(1.25, 1.15, 1.4)), layout.pick(24.0, 22.0, 26.0))
 
@@ -154,7 +154,7 @@ def passage(layout):
     wall(1, long, -0.3, wide + 0.3, height, layout.matte(0.40, 0.46, 0.50), (), 0.3)
     wall(1, -0.7, 0.0, wide, height, plaster, (), -0.3)
     first, pitch = layout.pick(1.4, 1.0, 1.8), layout.pick(2.4, 2.2, 2.7)
-    doors = [(first + pitch * k, first + pitch * k + 1.3, 0.0, 2.3) for k in range(int((long - first - 1.5) / pitch) + 1)]
+    doors = [(first + pitch * k, first + pitch * k + 1.15, 0.0, 2.3) for k in range(int((long - first - 1.5) / pitch) + 1)]
     wall(0, wide, -1.0, long, height, plaster, doors, 0.3)
     ground = far_plane(layout, layout.matte(0.50, 0.45, 0.36))
     ground.location.z = -0.25
