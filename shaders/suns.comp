@@ -2,6 +2,7 @@
 // Light of the environment's suns: small bright sources taken out of the map. suns_add.comp adds it to the light of the rest. For each
 // sun one side of a slice is marched as `arc` marches (README, Suns). Its 64 sectors divide the sun's own disc, so a penumbra has no
 // noise. Planes do not stand in here: a plane would put a point wholly in shadow or wholly out of it, and is wrong too often.
+// OUTSIDE: not all directions that leave the frame are open (include/outside.glsl).
 #define SUNS
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
@@ -10,10 +11,13 @@
 #include "include/arc_slice.glsl"
 #include "include/arc_line.glsl"
 #include "include/arc_sectors.glsl"
+#ifdef OUTSIDE
+#include "include/outside.glsl"
+#endif
 #include "include/suns.glsl"
 #include "include/arc_march.glsl"
 
-layout(rgba32f) writeonly uniform image2D sun_image; // rgb: light; a: its share of the light that arrives with nothing in the way
+layout(rgba32f) writeonly uniform image2D sun_image; // rgb: light; a: its share of the light that arrives with nothing in the way, -1 if none does
 
 // Where a ray leaves the box of all surfaces, beyond which nothing can block it; in pixels along its line.
 float way_out(vec3 P, vec3 S, Line line) {
@@ -45,13 +49,19 @@ void main() {
         float low = share_at(side, t - half_width), high = share_at(side, t + half_width);
         divide_into_sectors(low, high);
         Line line = lines_of(V, across, origin, -1.0).right;
+#ifndef OUTSIDE // the opening that shows the sky may lie beyond the box
         line.reach = way_out(P, S, line);
+#endif
         Sectors slots = all_open();
         march(slots, side, line, P, N, noise, 0.5);
+#ifdef OUTSIDE
+        float open = open_share(~slots.blocked, slots.seen);
+#else
         float open = 1.0 - sector_share(slots.blocked);
+#endif
         light += open * L;
         all += L;
     }
     float most = dot(all, LUMINANCE);
-    imageStore(sun_image, p, vec4(light, most > 0.0 ? dot(light, LUMINANCE) / most : 1.0));
+    imageStore(sun_image, p, vec4(light, most > 0.0 ? dot(light, LUMINANCE) / most : -1.0));
 }

@@ -22,6 +22,7 @@ void main() {
     vec3 P = position_of(p, depth), N = normal_at(p), all = vec3(0.0);
     for (int i = 0; i < params.suns; i++) all += sunlight(i, N);
     vec4 own = FETCH(sun_image, p);
+    if (own.a < 0.0) return; // it faces away from all suns
     float near = CONNECTED * footprint(depth), sum = 4.0 * own.a, total = 4.0;
     for (int k = 0; k < 9; k++) {
         ivec2 q = p + ivec2(k % 3, k / 3) - 1;
@@ -29,8 +30,9 @@ void main() {
         if (k == 4 || other == 0.0) continue;
         vec3 gap = position_of(q, other) - P;
         if (min(abs(dot(N, gap)), abs(dot(normal_at(q), gap))) > near) continue;
-        float w = (k & 1) == 1 ? 2.0 : 1.0;
-        sum += w * FETCH(sun_image, q).a;
+        float w = (k & 1) == 1 ? 2.0 : 1.0, share = FETCH(sun_image, q).a;
+        if (share < 0.0) continue;
+        sum += w * share;
         total += w;
     }
     float share = ratio(sum, total);
