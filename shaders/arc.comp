@@ -9,6 +9,7 @@
 //           between those, so that all slices together are evenly spaced
 //   BOUNCE: indirect = sum w (blocked share x light that the nearest blocker sends) / sum w. With EXITANT the sender image is a picture
 //           that the renderer lit. Without, it is light before albedo, and is multiplied by the sender's albedo here
+// OUTSIDE: not all directions that leave the frame are open (include/outside.glsl).
 // HORIZON (gtao), BITMASK (bitmask) or RUNS (arc) says what blocks the sectors; PLANES adds planes to RUNS.
 #if !defined(LIGHT) && !defined(BOUNCE)
 #define LIMITED // to the radius; light comes from any distance
@@ -20,6 +21,9 @@
 #include "include/arc_slice.glsl"
 #include "include/arc_line.glsl"
 #include "include/arc_sectors.glsl"
+#ifdef OUTSIDE
+#include "include/outside.glsl"
+#endif
 
 #if defined(VISIBILITY) || !(defined(LIGHT) || defined(BOUNCE))
 #define SCALAR
@@ -33,6 +37,9 @@ PICTURE(rgba32f, sender_image);
 layout(rgba32f) writeonly uniform image2D indirect_image;
 #ifndef EXITANT
 PICTURE(rgba32f, albedo_image);
+#endif
+#ifdef OUTSIDE
+PICTURE(rgba32f, outside_image); // one texel: what surfaces outside the frame send
 #endif
 #endif
 #ifdef HALF_DIFFERENCE
@@ -113,6 +120,9 @@ void main() {
     vec3 bounced = vec3(0.0);
 #ifdef BOUNCE
     unseen = UNSEEN * FETCH(sender_image, p).rgb;
+#ifdef OUTSIDE
+    vec3 outside_light = FETCH(outside_image, ivec2(0)).rgb;
+#endif
 #endif
 #ifdef BENT
     vec3 shut = vec3(0.0);
@@ -138,6 +148,9 @@ void main() {
             march(slots, side, line, P, N, k == 0 ? 1.0 - noise.x : noise.x, k == 0 ? 1.0 - noise.y : noise.y);
             if (k == 0) {
                 slots.blocked = bitfieldReverse(slots.blocked.yx);
+#ifdef OUTSIDE
+                slots.seen = bitfieldReverse(slots.seen.yx);
+#endif
                 side = opposite(side, -n);
                 line = lines.right;
             }
@@ -153,10 +166,13 @@ void main() {
         first_all += first ? weight : 0.0;
 #endif
 #ifdef LIGHT
-        add_sky(light, side, V, across, n, weight, slots.blocked, noise.y);
+        add_sky(light, side, V, across, n, weight, slots, noise.y);
 #endif
 #ifdef BOUNCE
         bounced += weight * slots.light;
+#ifdef OUTSIDE
+        bounced += weight * (sector_share(~slots.blocked) - open_share(~slots.blocked, slots.seen)) * outside_light;
+#endif
 #endif
 #ifdef BENT
         shut += weight * blocked_moment(side, V, across, n, slots.blocked, noise.y);

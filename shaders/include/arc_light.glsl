@@ -12,7 +12,7 @@ struct Light {
     float open_luminance, all_luminance;
 };
 
-void add_sky(inout Light light, Side s, vec3 V, vec3 across, float n, float weight, uvec2 blocked, float jitter) {
+void add_sky(inout Light light, Side s, vec3 V, vec3 across, float n, float weight, Sectors slots, float jitter) {
     const float width = PI / float(CELLS);
     const vec2 half_turn = vec2(cos(0.5 * width), sin(0.5 * width));
     float from = n - 0.5 * PI, c = 0.0, wedge = PI / float(params.slices);
@@ -22,7 +22,10 @@ void add_sky(inout Light light, Side s, vec3 V, vec3 across, float n, float weig
         edge = turned(middle, half_turn);
         float next = i + 1 == CELLS ? 1.0 : share_at(s, from + float(i + 1) * width, edge);
         uvec2 cell = sectors(c, next, jitter);
-        float share = sector_share(cell), open = sector_share(cell & ~blocked);
+        float share = sector_share(cell), open = sector_share(cell & ~slots.blocked);
+#ifdef OUTSIDE
+        open = open_share(cell & ~slots.blocked, slots.seen);
+#endif
         vec3 direction = to_map(middle.x * V + middle.y * across);
         float solid_angle = FOOTPRINT * wedge * max(abs(middle.y) * width, 0.25 * width * width);
         vec3 L = radiance_from(direction, params.level < 0.0 ? map_level(direction, solid_angle) : params.level);

@@ -28,6 +28,9 @@ struct Run {
     float rim_inverse;  // 1 / its distance from the eye
     float last_share, last_squared; // of the last sample: share, squared distance
     vec3 point, normal, light; // of the last sample
+#ifdef OUTSIDE
+    float rim_depth, rim_share; // of the opening that the last sample shows; depth 0: it shows none
+#endif
 };
 
 // What a march needs of its line and of the frame.
@@ -54,8 +57,28 @@ void finish(inout Sectors slots, Side s, Walk k, Run r, bool ends, bool now) {
     float back = share(s, r.rim + thickness * away(s, r.rim, r.rim_inverse));
     uvec2 mask = sectors(r.low, max(r.high, back), k.jitter);
 #endif
+#ifdef OUTSIDE
+    mask &= sectors(r.low, r.high, k.jitter) | ~slots.seen; // what has left through an opening is past the backs of its frame
+#endif
     block(slots, now && r.alive && r.low <= r.high ? mask : uvec2(0u), HIDDEN * r.light);
 }
+
+#ifdef OUTSIDE
+// A background pixel shows that its view ray is empty. Behind the opening that it is seen through, directions that meet this ray are
+// outdoors there, so nothing unseen blocks them: an arc from the opening to the end of the ray. The further out a ray, the lower its
+// arc, and the directions between two rays of one opening are outdoors too. The opening ends halfway between a sample that shows it
+// and one that does not.
+void see(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at, float before, uvec2 stored_texel) {
+    float rim = stored_texel.x == 0u ? uintBitsToFloat(stored_texel.y) : 0.0;
+    bool here = rim > 0.0, there = run.rim_depth > 0.0;
+    vec2 screen = k.line.origin + (here && there ? at : 0.5 * (before + at)) * k.line.direction;
+    vec3 end = is_orthographic() ? vec3(0.0, 0.0, 1.0) : ray_at(screen);
+    float far = share(s, in_slice(s, end)), near = share(s, in_slice(s, position_at(screen, here ? rim : run.rim_depth) - P));
+    slots.seen |= here || there ? sectors(near, there ? max(far, run.rim_share) : far, k.jitter) : uvec2(0u);
+    run.rim_depth = rim;
+    run.rim_share = near;
+}
+#endif
 
 // Takes the sample at distance `at`; the sample before lies at `before`.
 void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at, float before) {
@@ -96,6 +119,9 @@ void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at,
     run.low = counts ? min(low, c) : low;
     run.high = counts ? max(high, c) : high;
     run.width = params.kappa * (length(w - run.first) + step_size);
+#ifdef OUTSIDE
+    see(slots, run, s, k, P, at, before, stored_texel);
+#endif
     run.alive = surface;
     run.last = w;
     run.point = Q;
@@ -132,7 +158,11 @@ void go_on(inout Sectors slots, inout Run run, Side s, Walk k, float at) {
 }
 
 void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
-    Run run = Run(true, false, 2.0, 1.0, 0.0, vec2(0.0), vec2(0.0), vec2(0.0), 0.0, 1.0, 0.0, P, N, vec3(0.0));
+    Run run = Run(true, false, 2.0, 1.0, 0.0, vec2(0.0), vec2(0.0), vec2(0.0), 0.0, 1.0, 0.0, P, N, vec3(0.0)
+#ifdef OUTSIDE
+                  , 0.0, 0.0
+#endif
+                  );
     Walk k = Walk(line, min(line.reach, line.border), jitter, params.radius * params.radius, footprint(1.0));
     float before = 0.0, last = last_step(line);
     for (int i = 0; i < params.steps; i++) {

@@ -19,7 +19,8 @@ struct Params {
     int exitant;
     float inverse_steps;
     int before;
+    float openness;
 };
 Params params = Params(stored.radius, stored.thickness, stored.kappa, stored.thin, stored.slices, stored.steps, stored.seed,
                        stored.planes, stored.tolerance, stored.level, stored.strength, stored.suns, stored.exitant,
-                       stored.inverse_steps, stored.before);
+                       stored.inverse_steps, stored.before, stored.openness);

@@ -16,6 +16,9 @@ struct Sectors {
 #ifdef BOUNCE
     vec3 light;
 #endif
+#ifdef OUTSIDE
+    uvec2 seen; // their directions pass through an opening behind which the picture shows nothing (outside.glsl)
+#endif
 };
 
 Sectors all_open() {
@@ -23,6 +26,9 @@ Sectors all_open() {
     s.blocked = uvec2(0u);
 #ifdef BOUNCE
     s.light = vec3(0.0);
+#endif
+#ifdef OUTSIDE
+    s.seen = uvec2(0u);
 #endif
     return s;
 }

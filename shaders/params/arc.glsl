@@ -13,7 +13,7 @@ PARAMS(arc_params) {
     int exitant;
     float inverse_steps;
     int before;          // slices of earlier rounds
-    int unused;
+    float openness;      // share of the unseen directions outside the frame that are open (outside.glsl); 1 all
     vec4 sun_direction[MAX_SUNS]; // camera space, unit; w half its width, radians
     vec4 sun_light[MAX_SUNS];     // rgb: irradiance over pi of a surface that faces the sun
     vec4 box_low, box_high; // of all surfaces, map axes, the eye at the origin

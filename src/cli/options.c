@@ -19,6 +19,7 @@ void options_defaults(options *o)
         .method = "arc",
         .radius_unit = RADIUS_AUTO,
         .thickness = -1,
+        .outside = -1,
         .blur = -1,
         .half = -1,
         .mesh_axes = -1,

@@ -1,9 +1,12 @@
 #include "passes/arc.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/mem.h"
 #include "passes/method.h"
+#include "passes/openings.h"
 
 static const float HUGE_LENGTH = 1e15f; // its square is still a float
 static const float KAPPA = 1.0f;        // a run is as thick as it is wide
@@ -50,6 +53,7 @@ arc_params arc_params_of_grid(const pass_context *c, int slices, int steps)
         .planes = c->planes.count,
         .level = (float)s->env_level,
         .strength = (float)s->bounce_strength,
+        .openness = (float)s->outside,
     };
     if (s->thickness_fixed) p.thin = p.thickness;
     arc_set_grid(&p, slices, steps);
@@ -105,6 +109,20 @@ static bool make_planes(pass_context *c, error *e)
     return true;
 }
 
+// ---- the outside
+
+bool arc_closes_outside(const pass_context *c) { return c->set.outside < 1.0; }
+
+// The depth of openings, at background pixels.
+static bool make_rim(pass_context *c, gpu_image *rim, error *e)
+{
+    float *depth = mem_pixels((size_t)c->width * (size_t)c->height, sizeof *depth, e);
+    bool ok = depth && openings_find(c->gb, depth, e) && pass_make(c, rim, GL_R32F, 0.0f, e);
+    if (ok) gpu_image_upload(c->g, rim, 0, depth);
+    free(depth);
+    return ok;
+}
+
 // ---- the passes
 
 variant arc_variant(const pass_context *c, const char *what)
@@ -119,15 +137,20 @@ static bool make_surface(pass_context *c, error *e)
 {
     if (c->image[IMAGE_SURFACE].id) return true;
     const arc_params params = arc_params_of(c);
-    const variant v = arc_variant(c, "");
+    variant v = arc_variant(c, "");
+    gpu_image rim = {0};
+    variant_add(&v, arc_closes_outside(c), "OUTSIDE");
     const pass_call call = {
         .program = "surface",
         .variant = v.words,
+        .everywhere = arc_closes_outside(c),
         PASS_PARAMS(params),
-        .reads = {{"planes_image", &c->image[IMAGE_PLANES]}},
+        .reads = {{"planes_image", &c->image[IMAGE_PLANES]}, {"rim_image", &rim}},
         .writes = {{"surface_image", &c->image[IMAGE_SURFACE]}},
     };
-    return pass_make_image(c, IMAGE_SURFACE, e) && pass_run(c, &call, e);
+    bool ok = (!arc_closes_outside(c) || make_rim(c, &rim, e)) && pass_make_image(c, IMAGE_SURFACE, e) && pass_run(c, &call, e);
+    gpu_image_free(&rim);
+    return ok;
 }
 
 bool arc_make_inputs(pass_context *c, error *e) { return make_planes(c, e) && make_surface(c, e); }
@@ -189,6 +212,23 @@ static bool light_planes(pass_context *c, const arc_params *params, const gpu_im
     return c->planes.count + c->planes.uneven == 0 || pass_run(c, &call, e);
 }
 
+// What surfaces outside the frame send.
+static bool light_outside(pass_context *c, const arc_params *params, const gpu_image *sender, const gpu_image *albedo, error *e)
+{
+    const pass_call call = {
+        .program = "outside_light",
+        .untimed = true,
+        .groups = {1, 1},
+        PASS_PARAMS(*params),
+        .reads = {{"sender_image", sender}, {"albedo_image", albedo}},
+        .writes = {{"outside_image", &c->image[IMAGE_OUTSIDE_LIGHT]}},
+    };
+    if (!arc_closes_outside(c)) return true;
+    if (!c->image[IMAGE_OUTSIDE_LIGHT].id && !gpu_image_make(c->g, &c->image[IMAGE_OUTSIDE_LIGHT], GL_RGBA32F, 1, 1, 1, e))
+        return false;
+    return pass_run(c, &call, e);
+}
+
 // Light comes from any distance, so this march has no radius. It makes the sky's light, through the open sectors, and the bounce,
 // from the blocked ones. One march makes both, unless the bounce needs the filtered sky light.
 static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
@@ -201,13 +241,16 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
     params.exitant = exitant;
     if (sky && (!pass_split_suns(c, e) || !pass_make_image(c, IMAGE_RADIANCE, e))) return false;
     if (visibility && !pass_make_image(c, IMAGE_VISIBILITY, e)) return false;
-    if (bounce && (!light_planes(c, &params, sender, albedo, e) || !pass_make_image(c, IMAGE_INDIRECT, e))) return false;
+    if (bounce && (!light_planes(c, &params, sender, albedo, e) || !light_outside(c, &params, sender, albedo, e) ||
+                   !pass_make_image(c, IMAGE_INDIRECT, e)))
+        return false;
     if (sky) c->suns_apart = c->sunless->map.id != 0;
     variant v = arc_variant(c, "RUNS");
     variant_add(&v, sky, "LIGHT");
     variant_add(&v, visibility, "VISIBILITY");
     variant_add(&v, bounce, "BOUNCE");
     variant_add(&v, bounce && exitant, "EXITANT");
+    variant_add(&v, arc_closes_outside(c), "OUTSIDE");
     const pass_call call = {
         .program = "arc",
         .label = sky && bounce ? "arc light+bounce"
@@ -218,7 +261,8 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
         .reads = {{"surface_image", &c->image[IMAGE_SURFACE]},
                   {"planes_image", &c->image[IMAGE_PLANES]},
                   {"sender_image", sender},
-                  {"albedo_image", albedo}},
+                  {"albedo_image", albedo},
+                  {"outside_image", &c->image[IMAGE_OUTSIDE_LIGHT]}},
         .writes = {{"scalar_image", &c->image[IMAGE_VISIBILITY]},
                    {"light_image", &c->image[IMAGE_RADIANCE]},
                    {"indirect_image", &c->image[IMAGE_INDIRECT]}},
@@ -239,13 +283,14 @@ static bool run_bounce(pass_context *c, error *e)
 
 static const variant_row variants[] = {
     {.program = "arc",
-     .pattern =
-         ARC_OCCLUSION("RUNS [PLANES]") " | RUNS [PLANES] LIGHT [VISIBILITY] | RUNS [PLANES] LIGHT [VISIBILITY] BOUNCE EXITANT | "
-                                        "RUNS [PLANES] BOUNCE [EXITANT]"},
+     .pattern = ARC_OCCLUSION("RUNS [PLANES]") " | RUNS [PLANES] LIGHT [VISIBILITY] [OUTSIDE] | "
+                                               "RUNS [PLANES] LIGHT [VISIBILITY] BOUNCE EXITANT [OUTSIDE] | "
+                                               "RUNS [PLANES] BOUNCE [EXITANT] [OUTSIDE]"},
+    {.program = "outside_light", .pattern = ""},
     {.program = "plane_light", .pattern = ""},
-    {.program = "suns", .pattern = ""},
+    {.program = "suns", .pattern = "[OUTSIDE]"},
     {.program = "suns_add", .pattern = "[VISIBILITY]"},
-    {.program = "surface", .pattern = "[PLANES]"},
+    {.program = "surface", .pattern = "[PLANES] [OUTSIDE]"},
     {0},
 };
 

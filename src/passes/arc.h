@@ -44,6 +44,9 @@ bool arc_run_adaptive(pass_context *c, const char *what, error *e);
 // came to.
 bool arc_run_as_adaptive(pass_context *c, const pass_call *call, const arc_params *params, error *e);
 
+// Whether directions that leave the frame may be closed (shaders/include/outside.glsl).
+bool arc_closes_outside(const pass_context *c);
+
 void arc_put(float to[4], vec3 a, double w);
 
 #endif

@@ -57,3 +57,5 @@ IMAGE(HALF_DIFFERENCE, .name = "half-difference", .format = GL_R32F)
 IMAGE(PLANES, .name = "planes", .format = GL_RGBA32F)
 // Depth and normal in one texel, for the slice marches.
 IMAGE(SURFACE, .name = "surface", .format = GL_RG32UI)
+// The light that surfaces outside the frame are taken to send: one texel.
+IMAGE(OUTSIDE_LIGHT, .name = "light of the outside", .format = GL_RGBA32F)

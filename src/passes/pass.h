@@ -48,8 +48,9 @@ typedef struct pass_settings {
     int vpl_count;
     mat3 world_from_camera; // to the world that the environment is fixed to
     int seed;
-    bool planes; // let large planes stand in for what the camera does not see
-    bool half;   // method and bounce run on a frame of half the size
+    double outside; // share of the unseen directions outside the frame that are open to the environment; 1 all
+    bool planes;    // let large planes stand in for what the camera does not see
+    bool half;      // method and bounce run on a frame of half the size
     double amount;
     const char *mesh;          // raytrace: the scene's surfaces, an OBJ file; borrowed
     int trace;                 // trace_backend of passes/trace.h

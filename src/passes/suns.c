@@ -94,6 +94,7 @@ bool pass_suns(pass_context *c, error *e)
     gpu_image light = {0};
     const pass_call march = {
         .program = "suns",
+        .variant = arc_closes_outside(c) ? "OUTSIDE" : NULL,
         PASS_PARAMS(params),
         .reads = {{"surface_image", &c->image[IMAGE_SURFACE]}},
         .writes = {{"sun_image", &light}},

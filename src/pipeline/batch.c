@@ -16,6 +16,7 @@
 #include "pipeline/report.h"
 #include "pipeline/resume.h"
 #include "pipeline/sequence_report.h"
+#include "pipeline/settings.h"
 #include "pipeline/stopwatch.h"
 
 enum { PATH = 4096, NEIGHBOURS = 256 };
@@ -294,11 +295,15 @@ static bool list_frames(const options *o, frame_list *out, error *e)
     return true;
 }
 
-static bool measure_radius(job *j, int frame, error *e)
+static bool measure_shot(job *j, int frame, error *e)
 {
     input_paths *in = mem_zero(1, sizeof *in, e);
-    bool ok = in && inputs_of_frame(j->o, frame, in) && frame_measure_radius(j, in->list, in->count, &j->sequence_radius, e);
-    if (ok) log_info(j->log, "radius: %g scene units for the whole sequence, from %s", j->sequence_radius, in->list[0]);
+    bool ok = in && inputs_of_frame(j->o, frame, in) && frame_measure_shot(j, in->list, in->count, &j->shot, e);
+    if (ok && j->o->radius_unit == RADIUS_AUTO)
+        log_info(j->log, "radius: %g scene units for the whole sequence, from %s", j->shot.radius, in->list[0]);
+    if (ok && j->shot.roof >= 0.0)
+        log_info(j->log, "outside: %g open for the whole sequence, by the roof in %s", j->shot.outside, in->list[0]);
+    j->is_shot = ok;
     free(in);
     return ok || err_set(e, ERR_USAGE, j->o->inputs[0], NULL, "the path of frame %d is too long", frame);
 }
@@ -311,9 +316,10 @@ static bool measure_lowest(job *j, const frame_list *existing, error *e)
     error first = {0};
     for (int i = 0; i < existing->count && !job_stopped(j); i++) {
         error here = {0};
-        if (measure_radius(j, existing->frames[i], &here)) {
+        if (measure_shot(j, existing->frames[i], &here)) {
             if (i > 0)
-                log_warn(j->log, "radius-from", "the automatic radius is from frame %d, because frame %d cannot be used: %s",
+                log_warn(j->log, "radius-from",
+                         "the automatic radius and --outside auto are from frame %d, because frame %d cannot be used: %s",
                          existing->frames[i], existing->frames[0], why);
             return true;
         }
@@ -326,17 +332,18 @@ static bool measure_lowest(job *j, const frame_list *existing, error *e)
         *e = first;
     else
         err_set(e, first.code, first.file, first.channel,
-                "%s. The automatic radius of the sequence is measured on this frame; --radius-from names another%s",
+                "%s. The automatic radius and --outside auto of the sequence are measured on this frame; --radius-from names "
+                "another%s",
                 first.message, j->o->keep_going || first.refused ? "" : ", --keep-going takes the next one that can be read");
     return false;
 }
 
-// The same automatic radius for every frame and every farm task, whatever --frames says.
-static bool fix_radius(job *j, error *e)
+// The same automatic radius and outside for every frame and every farm task, whatever --frames says.
+static bool fix_shot(job *j, error *e)
 {
     frame_list existing = {0};
-    if (j->o->radius_unit != RADIUS_AUTO) return true;
-    if (j->o->radius_from != INT_MIN) return measure_radius(j, j->o->radius_from, e);
+    if (j->o->radius_unit != RADIUS_AUTO && !settings_asks_outside(j->o)) return true;
+    if (j->o->radius_from != INT_MIN) return measure_shot(j, j->o->radius_from, e);
     if (!pattern_scan(j->o->inputs[0], &existing, e)) return false;
     if (existing.count == 0) return err_set(e, ERR_INPUT, j->o->inputs[0], NULL, "no file fits this pattern");
     bool ok = measure_lowest(j, &existing, e);
@@ -392,7 +399,7 @@ bool batch_run(job *j, error *e)
     pthread_mutex_init(&b->lock, NULL);
     pthread_cond_init(&b->changed, NULL);
     bool ok = list_frames(j->o, &b->frames, e) &&
-              (!j->files || run_files_check(j->files, b->frames.frames, b->frames.count, e)) && fix_radius(j, e);
+              (!j->files || run_files_check(j->files, b->frames.frames, b->frames.count, e)) && fix_shot(j, e);
     b->failures.frames = ok ? mem_zero((size_t)b->frames.count, sizeof *b->failures.frames, e) : NULL;
     ok = ok && b->failures.frames;
     if (ok) compare_device(b);

@@ -75,7 +75,7 @@ static void explain_colour(const options *o, const frame_result *r, FILE *to)
 static void explain_plan(const job *j, frame_result *r, FILE *to)
 {
     heading(to, "what would run");
-    r->set = settings_of(j, r, settings_radius(j, &r->gb));
+    r->set = settings_of(j, r, settings_shot(j, r));
     filter_list(r, false, &r->steps);
     for (int i = 0; i < r->steps.count; i++) {
         const plan_step *s = &r->steps.steps[i];

@@ -14,11 +14,16 @@
 void frame_lap(frame_result *r, stage s, stopwatch *since) { stopwatch_add(since, &r->wall_ms[s], &r->cpu_ms[s]); }
 
 // What the rooms below have not said themselves: channels, camera and measurements are theirs.
-static void describe(const job *j, const frame_result *r)
+static void describe(const job *j, const frame_result *r, shot_facts shot)
 {
     log_info(j->log, "surfaces: %zu of %zu pixels", r->gb.valid, (size_t)r->gb.width * (size_t)r->gb.height);
     log_info(j->log, "radius: %g scene units%s; thickness %g", r->set.radius, j->o->radius_unit == RADIUS_AUTO ? " (auto)" : "",
              r->set.thickness);
+    if (shot.roof >= 0.0)
+        log_info(j->log, "outside: %g of the unseen directions are open, as %.3g %% of the picture is a roof (--outside)",
+                 shot.outside, 100.0 * shot.roof);
+    else if (settings_asks_outside(j->o) && r->plan.light)
+        log_info(j->log, "outside: open, as nobody knows which way is up (--outside)");
 }
 
 // The environment is prepared with the first frame, because its default up axis is the renderer's.
@@ -64,11 +69,11 @@ static bool load_proxies(const job *j, frame_result *r, error *e)
     return proxies_load(many ? path : j->o->proxies, &r->proxies, e);
 }
 
-static bool prepare_view(const job *j, frame_result *r, double radius, error *e)
+static bool prepare_view(const job *j, frame_result *r, shot_facts shot, error *e)
 {
     if (r->gb.valid == 0) log_warn(j->log, "empty", "%s: no pixel has a surface; the layers are neutral", r->file->path);
-    r->set = settings_of(j, r, radius);
-    describe(j, r);
+    r->set = settings_of(j, r, shot);
+    describe(j, r, shot);
     return frame_check_scale(r, e) && check_world(j, r, e) && load_proxies(j, r, e) && filter_prepare(j, r, e);
 }
 
@@ -76,11 +81,11 @@ bool frame_prepare(const job *j, frame_result *r, error *e)
 {
     if (r->prepared) return true;
     stopwatch t = stopwatch_start();
-    double radius = settings_radius(j, &r->gb);
+    shot_facts shot = settings_shot(j, r);
     bool ok = true;
     for (frame_result *v = r; ok && v; v = v->next_view) {
         v->frame = r->frame;
-        ok = prepare_view(j, v, radius, e);
+        ok = prepare_view(j, v, shot, e);
     }
     frame_lap(r, STAGE_RESOLVE, &t);
     return ok;
@@ -156,11 +161,11 @@ bool frame_run_files(job *j, const char *const *inputs, int count, const char *o
     return true;
 }
 
-bool frame_measure_radius(const job *j, const char *const *inputs, int count, double *radius, error *e)
+bool frame_measure_shot(const job *j, const char *const *inputs, int count, shot_facts *shot, error *e)
 {
     frame_result r;
     bool ok = frame_read_files(j, inputs, count, &r, e);
-    if (ok) *radius = gbuffer_auto_radius(&r.gb);
+    if (ok) *shot = settings_measure_shot(j, &r);
     frame_free(&r);
     return ok;
 }

@@ -86,7 +86,7 @@ double frame_median_depth(const gbuffer *gb);
 // for what is beyond.
 bool frame_check_scale(const frame_result *r, error *e);
 
-// The automatic radius of one frame, for a sequence that must have the same radius everywhere.
-bool frame_measure_radius(const job *j, const char *const *inputs, int count, double *radius, error *e);
+// What a sequence must have the same everywhere, measured on one frame of it.
+bool frame_measure_shot(const job *j, const char *const *inputs, int count, shot_facts *shot, error *e);
 
 #endif

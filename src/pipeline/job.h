@@ -11,6 +11,13 @@
 #include "passes/trace.h"
 #include "pipeline/files.h"
 
+// What frames have in common. 0 and -1: each frame has its own.
+typedef struct shot_facts {
+    double radius;  // of the occlusion, scene units
+    double outside; // how open the unseen outside is
+    double roof;    // the share of the picture that is a roof; -1: not known
+} shot_facts;
+
 // What lives for all frames of a run: options, context, environment.
 typedef struct job {
     const options *o;
@@ -27,7 +34,8 @@ typedef struct job {
     progress *progress;       // borrowed, may be NULL
     bool no_floats;           // nobody looks at a frame's `layers`: they are not kept
     bool no_pass_times;       // nobody looks at the passes' own times, for which each would have to be waited for
-    double sequence_radius;   // automatic radius of the whole sequence; 0: each frame has its own
+    bool is_shot;             // the frames are one shot, so that these are known:
+    shot_facts shot;
 } job;
 
 // Begins a job. stop, files, progress and no_floats are the caller's to set afterwards. Before any thread of ours starts.

@@ -26,13 +26,13 @@ static bool put_shader_folder(digester *d, const char *folder, error *e)
 
 static bool put_settings(digester *d, const job *j, error *e)
 {
-    char radius[32];
+    char shot[64];
     const char *folder = knob_value("SSDO_SHADER_DIR");
     if (!options_digest(j->o, d, e)) return false;
     digest_put_text(d, ssdo_decides);
     if (folder && !put_shader_folder(d, folder, e)) return false;
-    snprintf(radius, sizeof radius, "%a", (double)(float)j->sequence_radius);
-    digest_put_text(d, radius);
+    snprintf(shot, sizeof shot, "%a %a", (double)(float)j->shot.radius, (double)(float)j->shot.outside);
+    digest_put_text(d, shot);
     return true;
 }
 

@@ -210,6 +210,7 @@ static json_object *report_of(const job *j, const frame_result *r, const char *o
     if (r->set.error > 0.0) json_put(o, "rounds", report_rounds(r));
     json_put_number(o, "radius", r->set.radius);
     json_put_number(o, "thickness", r->set.thickness);
+    json_put_number(o, "outside", r->set.outside);
     json_put_number(o, "valid_share", pixels > 0 ? (double)r->gb.valid / pixels : 0.0);
     json_put_number(o, "off_frame_share", report_off_frame_share(r));
     json_put_number(o, "off_ray_share", r->gb.valid ? (double)r->gb.off_ray / (double)r->gb.valid : 0.0);

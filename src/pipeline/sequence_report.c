@@ -78,7 +78,7 @@ bool sequence_report_write(sequence_report *s, const job *j, const frame_list *f
     if (j->g.software) json_put_text(o, "why_software", j->g.why_software);
     json_put_text(o, "args", args);
     free(args);
-    if (j->sequence_radius > 0.0) json_put_number(o, "radius", j->sequence_radius);
+    if (j->is_shot && j->o->radius_unit == RADIUS_AUTO) json_put_number(o, "radius", j->shot.radius);
     json_put(o, "done", json_object_new_int(s->done));
     json_put(o, "skipped", json_object_new_int(s->skipped));
     json_put(o, "failed", json_object_new_int(s->failed));

@@ -1,17 +1,20 @@
 #include "pipeline/settings.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "gbuffer/conventions.h"
+#include "passes/method.h"
+#include "passes/openings.h"
 
 bool settings_up_z(const job *j, const frame_result *r) { return j->o->env_up ? j->o->env_up == 'z' : r->resolution.up_is_z; }
 
-double settings_radius(const job *j, const gbuffer *gb)
+static double radius_of(const job *j, const gbuffer *gb)
 {
     const options *o = j->o;
     if (o->radius_unit == RADIUS_WORLD) return o->radius;
-    if (o->radius_unit == RADIUS_AUTO) return j->sequence_radius > 0.0 ? j->sequence_radius : gbuffer_auto_radius(gb);
+    if (o->radius_unit == RADIUS_AUTO) return j->is_shot ? j->shot.radius : gbuffer_auto_radius(gb);
     // Pixels are turned into one world distance at the frame's median depth, so that the radius is the same on all surfaces.
     double per_unit = gb->camera.fx;
     return gb->camera.kind == CAMERA_ORTHOGRAPHIC ? o->radius / per_unit : o->radius * frame_median_depth(gb) / per_unit;
@@ -60,6 +63,50 @@ static mat3 world_from_camera(const job *j, const frame_result *r)
     return r->gb.camera.has_rotation ? r->gb.camera.world_from_camera : m3_identity();
 }
 
+// ---- the outside
+
+// Below the first share of roof the picture is taken to be under the sky, above the second one to be covered. Between them the
+// outside closes by degrees, so that nothing jumps.
+static const double LEAST_ROOF = 0.01, MOST_ROOF = 0.03;
+
+bool settings_asks_outside(const options *o)
+{
+    return o->outside < 0.0 && o->env && (!o->method || strcmp(o->method, method_default()->name) == 0);
+}
+
+// Which way is up needs the camera's rotation, or an environment that moves with the camera.
+static bool knows_up(const job *j, const frame_result *r)
+{
+    return r->gb.camera.has_rotation || strcmp(j->o->env_frame, "camera") == 0;
+}
+
+static shot_facts outside_of(const job *j, const frame_result *r)
+{
+    shot_facts f = {.outside = j->o->outside, .roof = -1.0};
+    if (f.outside >= 0.0) return f;
+    f.outside = 1.0;
+    if (!settings_asks_outside(j->o) || !knows_up(j, r)) return f;
+    vec3 up = settings_up_z(j, r) ? v3(0, 0, 1) : v3(0, 1, 0);
+    f.roof = openings_roof(&r->gb, m3_apply(m3_transpose(world_from_camera(j, r)), up));
+    double t = fmin(fmax((f.roof - LEAST_ROOF) / (MOST_ROOF - LEAST_ROOF), 0.0), 1.0);
+    f.outside = 1.0 + (OUTSIDE_COVERED - 1.0) * t * t * (3.0 - 2.0 * t);
+    return f;
+}
+
+shot_facts settings_measure_shot(const job *j, const frame_result *r)
+{
+    shot_facts f = outside_of(j, r);
+    f.radius = gbuffer_auto_radius(&r->gb);
+    return f;
+}
+
+shot_facts settings_shot(const job *j, const frame_result *r)
+{
+    shot_facts f = j->is_shot ? j->shot : outside_of(j, r);
+    f.radius = radius_of(j, &r->gb);
+    return f;
+}
+
 // composite.comp: 1 the beauty, 2 the environment, 0 nothing.
 static int background_of(bool beauty, bool sky) { return beauty ? 1 : sky ? 2 : 0; }
 
@@ -69,17 +116,18 @@ static int samples_at(const method *m, int quality)
     return quality < 0 ? m->samples / 4 : quality > 0 ? m->samples * 4 : m->samples;
 }
 
-pass_settings settings_of(const job *j, const frame_result *r, double radius)
+pass_settings settings_of(const job *j, const frame_result *r, shot_facts shot)
 {
     const options *o = j->o;
     const method *m = r->plan.method;
     double share = o->thickness < 0.0 ? m->thickness : o->thickness;
     bool beauty = r->resolution.components[ROLE_BEAUTY] > 0, alpha = r->resolution.components[ROLE_ALPHA] > 0;
     return (pass_settings){
-        .radius = radius,
-        .thickness = share * radius,
+        .radius = shot.radius,
+        .thickness = share * shot.radius,
         .thickness_fixed = o->thickness >= 0.0,
         .planes = !o->no_planes,
+        .outside = shot.outside,
         .half =
             (o->half < 0 ? o->quality < 0 : o->half) && !r->plan.from_sh && o->error <= 0.0, // stored layers are whole already
         .samples = o->samples > 0 && o->error <= 0.0 ? o->samples : samples_at(m, o->error > 0.0 ? 0 : o->quality),

@@ -108,7 +108,8 @@ static void print_row(const char *name, const scene_score *r)
 {
     printf("| %s | %.4f | %+.4f | %.4f | %.4f |", name, r->occlusion, r->bias, r->edges, r->inside);
     for (int k = 0; k < LIGHTS; k++)
-        printf(" %.3f | %.3f | %.2f | %.2f |", r->light[k].over_rms, r->light[k].over_mean, r->light[k].means, r->light[k].median);
+        printf(" %.3f | %.3f | %.2f | %.2f |", r->light[k].over_rms, r->light[k].over_mean, r->light[k].means,
+               r->light[k].median);
     putchar('\n');
 }
 
@@ -137,9 +138,10 @@ static bool score_all(sample *scenes, int n, const char *out, char **names, int 
     scene_score all[SAMPLE_MAX] = {0}, mean = {0}, worst = {0};
     char path[512];
     int count = 0;
-    printf("| scene | occlusion | bias | at edges | elsewhere | radiance / rms | / mean | ratio | median | indirect / rms | / mean "
-           "| ratio | median |\n| --- |%s\n",
-           " ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+    printf(
+        "| scene | occlusion | bias | at edges | elsewhere | radiance / rms | / mean | ratio | median | indirect / rms | / mean "
+        "| ratio | median |\n| --- |%s\n",
+        " ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for (int i = 0; i < n; i++) {
         snprintf(path, sizeof path, "%s/%s.exr", out, scenes[i].name);
         FILE *f = is_named(scenes[i].name, names, name_count) ? fopen(path, "rb") : NULL;
@@ -166,7 +168,8 @@ int main(int argc, char **argv)
     bool ok = n > 0;
     if (ok && strcmp(argv[2], "list") == 0)
         for (int i = 0; i < n; i++)
-            printf("%s %s %s %g %g\n", scenes[i].name, scenes[i].file, scenes[i].env, scenes[i].env_rotate, scenes[i].ao_distance);
+            printf("%s %s %s %g %g\n", scenes[i].name, scenes[i].file, scenes[i].env, scenes[i].env_rotate,
+                   scenes[i].ao_distance);
     else if (ok)
         ok = score_all(scenes, n, argv[2], argv + 3, argc - 3, &e);
     if (ok) return 0;

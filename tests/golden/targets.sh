@@ -71,7 +71,7 @@ mkdir o && head -c 20000 f.0001.exr >cut && mv cut f.0001.exr
 "$SSDO" 'f.####.exr' -o 'o/f.####.exr' --samples 4 --keep-going --report o.json 2>err >/dev/null
 [ $? = 1 ] || die "a damaged lowest frame with --keep-going"
 [ "$(echo o/*)" = 'o/f.0002.exr o/f.0003.exr o/f.0004.exr' ] || die "frames are missing: $(ls o)"
-[ "$(grep -c 'the automatic radius is from frame 2' err)" = 1 ] || die "the radius is not told once"
+[ "$(grep -c 'the automatic radius and --outside auto are from frame 2' err)" = 1 ] || die "the radius is not told once"
 mkdir t && "$SSDO" -q 'f.####.exr' -o 't/f.####.exr' --samples 4 --keep-going --frames 4 || die "a task"
 cmp o/f.0004.exr t/f.0004.exr || die "another task has another radius"
 "$SSDO" -q 'f.####.exr' -o 't/f.####.exr' --samples 4 --radius-from 3 --frames 2 || die "--radius-from"

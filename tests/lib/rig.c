@@ -26,6 +26,7 @@ pass_settings rig_settings(const method *m, double radius)
 {
     return (pass_settings){.radius = radius,
                            .thickness = INFINITY,
+                           .outside = 1.0,
                            .samples = m->samples,
                            .scale = 1.0,
                            .contrast = 1.0,

@@ -150,6 +150,8 @@ static void words_for_values(void **state)
     assert_true(good("--thickness auto").thickness < 0);
     assert_true(isinf(good("--thickness inf").thickness));
     assert_true(good("--thickness 0.5").thickness == 0.5);
+    assert_true(good("").outside < 0 && good("--outside auto").outside < 0);
+    assert_true(good("--outside open").outside == 1 && good("--outside closed").outside == OUTSIDE_COVERED);
     assert_int_equal(good("--blur none").blur, 0);
     assert_int_equal(good("--blur 3").blur, 3);
     assert_int_equal(good("--env-up y").env_up, 'y');

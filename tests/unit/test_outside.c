@@ -1,0 +1,188 @@
+// What lies outside the frame: a roof is told from the sky, openings are found, and light of a closed place comes through the
+// openings that the picture shows.
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "must.h"
+#include "passes/openings.h"
+#include "rig.h"
+#include "scene_picture.h"
+#include "truth.h"
+
+static const vec3 grey = {0.5, 0.5, 0.5};
+
+static void quad(scene *s, double x, double y, double z, vec3 a, vec3 b) { scene_add_quad(s, v3(x, y, z), a, b, grey); }
+
+// A room 4 x 5 x 2.5, its far wall with a window from x = 1 to 3 and z = 1 to 2. The eye stands inside. Without `back` the wall
+// behind the eye is missing, and without `lid` the ceiling.
+static scene room(bool back, bool lid)
+{
+    scene s = {.eye = v3(2, 0.3, 1.5), .target = v3(2, 5, 1.3), .radius = 0.5};
+    vec3 x = v3(1, 0, 0), y = v3(0, 1, 0), z = v3(0, 0, 1);
+    quad(&s, 0, 0, 0, v3_scale(x, 4), v3_scale(y, 5));
+    if (lid) quad(&s, 0, 0, 2.5, v3_scale(x, 4), v3_scale(y, 5));
+    quad(&s, 0, 0, 0, v3_scale(y, 5), v3_scale(z, 2.5));
+    quad(&s, 4, 0, 0, v3_scale(y, 5), v3_scale(z, 2.5));
+    if (back) quad(&s, 0, 0, 0, v3_scale(x, 4), v3_scale(z, 2.5));
+    quad(&s, 0, 5, 0, v3_scale(x, 4), v3_scale(z, 1));
+    quad(&s, 0, 5, 2, v3_scale(x, 4), v3_scale(z, 0.5));
+    quad(&s, 0, 5, 1, v3_scale(x, 1), v3_scale(z, 1));
+    quad(&s, 3, 5, 1, v3_scale(x, 1), v3_scale(z, 1));
+    return s;
+}
+
+static void look(const scene *s, int width, int height, double fov, gbuffer *gb)
+{
+    error e = {0};
+    view v = view_perspective(width, height, fov, 1.0);
+    view_scene(&v, s);
+    must(scene_gbuffer(s, &v, gb, &e), &e);
+}
+
+static double roof_of(const scene *s, double fov)
+{
+    gbuffer gb;
+    look(s, 160, 90, fov, &gb);
+    double roof = openings_roof(&gb, m3_apply(m3_transpose(gb.camera.world_from_camera), v3(0, 0, 1)));
+    gbuffer_free(&gb);
+    return roof;
+}
+
+static void roofs(void **state)
+{
+    (void)state;
+    scene inside = room(true, true), court = room(true, false), up = inside, box = room(false, true), table = {0};
+    up.target = v3(2, 3, 2.5);
+    box.eye = v3(2, -5, 1.5); // before the open side: it sees where the ceiling ends
+    table.eye = v3(0, -6, 0.4), table.target = v3(0, 0, 0.8);
+    scene_add_plane(&table, v3(0, 0, 0), v3(0, 0, 1), grey);
+    scene_add_box(&table, v3(0, 0, 1.2), v3(1.5, 1.0, 0.05), 10.0, grey);
+    assert_true(roof_of(&inside, 60.0) > 0.05);
+    assert_true(roof_of(&up, 60.0) > 0.2);
+    assert_true(roof_of(&court, 60.0) == 0.0);
+    assert_true(roof_of(&box, 60.0) == 0.0);
+    assert_true(roof_of(&table, 40.0) == 0.0);
+}
+
+static void openings(void **state)
+{
+    (void)state;
+    enum { W = 160, H = 90 };
+    error e = {0};
+    scene s = room(true, true);
+    gbuffer gb;
+    static float rim[W * H];
+    look(&s, W, H, 60.0, &gb);
+    gb.depth[80 * W + 20] = 0.0f; // a crack in the floor
+    must(openings_find(&gb, rim, &e), &e);
+    int shown = 0, empty = 0;
+    for (int i = 0; i < W * H; i++) {
+        empty += gb.depth[i] == 0.0f;
+        if (rim[i] == 0.0f) continue;
+        assert_true(gb.depth[i] == 0.0f);
+        assert_true(fabs((double)rim[i] / 4.7 - 1.0) < 0.02); // the far wall
+        shown++;
+    }
+    assert_true(rim[80 * W + 20] == 0.0f);
+    assert_true(shown == empty - 1);
+    gbuffer_free(&gb);
+}
+
+typedef struct light {
+    double rms, ratio; // of the difference over the truth's rms; of the means
+} light;
+
+// A pixel in 7 x 7 against rays.
+static light light_of(const scene *s, double outside)
+{
+    enum { W = 160, H = 90, STEP = 7 };
+    static rig r;
+    error e = {0};
+    gbuffer gb;
+    frame_result out;
+    must(rig_open(&r, &(env_options){.scale = 1.0}, &e), &e);
+    look(s, W, H, 60.0, &gb);
+    pass_settings set = rig_settings(method_find("arc"), 0.5);
+    set.thickness = 0.1, set.planes = true, set.blur = 4, set.outside = outside;
+    must(rig_run(&r, &gb, method_find("arc"), &set, 1 << LAYER_RADIANCE, &out, &e), &e);
+    tracer t = scene_tracer(s);
+    truth_options o = {.rays = 1024, .offset = 1e-4}; // the points are rounded to floats
+    double se = 0, sx = 0, st = 0, stt = 0;
+    for (int y = STEP / 2; y < H; y += STEP)
+        for (int x = STEP / 2; x < W; x += STEP) {
+            size_t i = (size_t)y * W + (size_t)x;
+            const float *n = gb.normal + 4 * i;
+            if (gb.depth[i] == 0.0f) continue;
+            vec3 N = m3_apply(gb.camera.world_from_camera, v3((double)n[0], (double)n[1], (double)n[2]));
+            vec3 P = v3_add(gb.camera.origin, m3_apply(gb.camera.world_from_camera, gbuffer_position(&gb, x, y)));
+            double want = truth_radiance(&t, P, N, &o).x, got = (double)out.layers[LAYER_RADIANCE][3 * i];
+            se += (got - want) * (got - want), sx += got, st += want, stt += want * want;
+        }
+    rig_free_result(&out);
+    gbuffer_free(&gb);
+    rig_close(&r);
+    return (light){sqrt(se / stt), sx / st};
+}
+
+static void light_comes_through_the_window(void **state)
+{
+    (void)state;
+    scene s = room(true, true);
+    light closed = light_of(&s, 0.0), open = light_of(&s, 1.0), part = light_of(&s, 0.5);
+    printf("figure: room with a window in view: radiance %.3f of the truth's rms (means %.2f) closed, %.2f (%.1f) open\n",
+           closed.rms, closed.ratio, open.rms, open.ratio);
+    assert_true(closed.rms < 0.25);
+    assert_true(fabs(closed.ratio - 1.0) < 0.2);
+    assert_true(open.ratio > 2.0);
+    assert_true(part.ratio > closed.ratio && part.ratio < open.ratio);
+}
+
+// No background is in view, so nothing comes in. In particular the filter of the suns lends no light from surfaces that face
+// away.
+static void a_closed_place_is_black(void **state)
+{
+    (void)state;
+    enum { W = 96, H = 64, ENV_W = 256, ENV_H = 128 };
+    static rig r;
+    static float sky[3 * ENV_W * ENV_H];
+    error e = {0};
+    gbuffer gb;
+    frame_result out;
+    scene s = {.eye = v3(0.5, -3, 4), .target = v3(0, 0, 0.3), .radius = 0.5};
+    for (int i = 0; i < 3 * ENV_W * ENV_H; i++) sky[i] = 0.2f;
+    for (int k = 0; k < 3; k++) sky[3 * (30 * ENV_W + 40) + k] = 1000.0f;
+    must(rig_open(&r, NULL, &e), &e);
+    must(
+        environment_prepare(sky, ENV_W, ENV_H, &(env_options){.path = "sun", .up_z = true, .scale = 1.0}, &r.job.env, &r.log, &e),
+        &e);
+    r.job.env_loaded = true;
+    must(pass_upload_environment(&r.job.g, &r.job.env, &r.job.env_image, &e), &e);
+    scene_add_plane(&s, v3(0, 0, 0), v3(0, 0, 1), grey);
+    scene_add_box(&s, v3(0, 0, 0.4), v3(0.4, 0.3, 0.4), 20.0, grey);
+    look(&s, W, H, 30.0, &gb);
+    assert_int_equal(gb.valid, W * H);
+    pass_settings set = rig_settings(method_find("arc"), 0.5);
+    set.thickness = 0.1, set.planes = true, set.blur = 4, set.outside = 0.0;
+    must(rig_run(&r, &gb, method_find("arc"), &set, 1 << LAYER_RADIANCE | 1 << LAYER_INDIRECT, &out, &e), &e);
+    for (int i = 0; i < 3 * W * H; i++)
+        assert_true(out.layers[LAYER_RADIANCE][i] == 0.0f && out.layers[LAYER_INDIRECT][i] == 0.0f);
+    rig_free_result(&out);
+    gbuffer_free(&gb);
+    rig_close(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(roofs), cmocka_unit_test(openings),
+                                       cmocka_unit_test(light_comes_through_the_window),
+                                       cmocka_unit_test(a_closed_place_is_black)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
