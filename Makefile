@@ -199,7 +199,7 @@ demo: deps
 # The lint is one of the tests, so that it fills what the others leave idle.
 check: deps-check
 	@$(MAKE) $(JOBS) --no-print-directory all unit $(BUILD)/shaders.c
-	@sh tests/run.sh $(BUILD) tests/lint.sh $(UNIT) $(HARD) $(REPLAY)
+	@SANFLAGS='$(SANFLAGS)' sh tests/run.sh $(BUILD) tests/lint.sh $(UNIT) $(HARD) $(REPLAY)
 
 # The build without a warning and the unit tests that take a moment: tests/fast.txt.
 FAST     := $(addprefix $(BUILD)/tests/,$(shell grep -v '^\#' tests/fast.txt))

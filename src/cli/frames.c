@@ -56,8 +56,8 @@ static bool read_item(const char **p, frame_list *l, bool *syntax, error *e)
         }
     }
     if (!*syntax) return false;
-    step = abs(step);
-    for (long f = first; first <= last ? f <= last : f >= last; f += first <= last ? step : -step)
+    long stride = labs((long)step);
+    for (long f = first; first <= last ? f <= last : f >= last; f += first <= last ? stride : -stride)
         if (!add(l, (int)f, e)) return false;
     return true;
 }
@@ -194,8 +194,8 @@ bool pattern_path(const char *pattern, int frame, char *out, size_t size)
     if (!find_place(pattern, &p))
         n = snprintf(out, size, "%s", pattern);
     else
-        n = snprintf(out, size, "%.*s%s%0*d%s", (int)p.begin, pattern, frame < 0 ? "-" : "", p.width, abs(frame),
-                     pattern + p.end);
+        n = snprintf(out, size, "%.*s%s%0*u%s", (int)p.begin, pattern, frame < 0 ? "-" : "", p.width,
+                     frame < 0 ? 0u - (unsigned)frame : (unsigned)frame, pattern + p.end);
     return n >= 0 && (size_t)n < size;
 }
 

@@ -75,10 +75,7 @@ bool settings_asks_outside(const options *o)
 }
 
 // Which way is up needs the camera's rotation, or an environment that moves with the camera.
-static bool knows_up(const job *j, const frame_result *r)
-{
-    return r->gb.camera.has_rotation || j->o->env_frame == FRAME_CAMERA;
-}
+static bool knows_up(const job *j, const frame_result *r) { return r->gb.camera.has_rotation || j->o->env_frame == FRAME_CAMERA; }
 
 static shot_facts outside_of(const job *j, const frame_result *r)
 {

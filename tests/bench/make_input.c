@@ -48,6 +48,7 @@ int main(int argc, char **argv)
     if (!scene_picture(&s, &v, &p, &e)) return 1;
     size_t n = (size_t)p.width * (size_t)p.height;
     exrio_out_channel channels[CHANNELS];
+    void *planes[CHANNELS];
     for (int c = 0; c < CHANNELS; c++) {
         bool half = c < 9;
         void *data = malloc(n * (half ? 2 : 4));
@@ -60,6 +61,7 @@ int main(int argc, char **argv)
             float_plane(p.position, c - 9, n, data);
         else
             memcpy(data, p.depth, n * 4);
+        planes[c] = data;
         channels[c] = (exrio_out_channel){names[c], half ? SAMPLE_HALF : SAMPLE_FLOAT, data};
     }
     exrio_out_part part = {.data_window = v.data_window,
@@ -71,6 +73,8 @@ int main(int argc, char **argv)
     char text[1024];
     bool ok = exrio_write(argv[3], &part, 1, 2, &e);
     err_format(&e, text, sizeof text);
+    for (int c = 0; c < CHANNELS; c++) free(planes[c]);
+    picture_free(&p);
     if (!ok) fprintf(stderr, "make_input: %s\n", text);
     return ok ? 0 : 1;
 }

@@ -28,10 +28,13 @@ warn="-Wall -Wextra -Werror -Wpedantic -std=c11 ${SANFLAGS:-}"
             $(pkg-config --static --libs ssdo | sed 's/-lssdo//') -Wl,--as-needed
 } || die "the example does not build"
 ldd "$dir/static" | grep -q libssdo && die "the static example needs the shared library"
+# A sanitizer must be loaded first, which Python does not do, and the leaks of drivers are only known to the tests' programs.
+under=
+[ -z "${SANFLAGS:-}" ] || under="env ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0 LD_PRELOAD=$(${CC:-cc} -print-file-name=libasan.so)"
 for example in "$dir/shared" "$dir/static" "env LIBSSDO=$dir/usr/lib/libssdo.so $python samples/library/filter.py"; do
     rm -f "$dir/library.exr"
     # shellcheck disable=SC2086
-    said=$($example samples/box.exr "$dir/library.exr" $settings 2>"$dir/err") || die "$example: $(cat "$dir/err")"
+    said=$($under $example samples/box.exr "$dir/library.exr" $settings 2>"$dir/err") || die "$example: $(cat "$dir/err")"
     case $said in "occlusion 0."*) ;; *) die "$example said: $said" ;; esac
     # The program's file has a digest beside, for --skip-existing; all else must be the same.
     oiiotool --info -v -a "$dir/program.exr" | grep -v 'ssdo/digest\|program.exr' >"$dir/a"
@@ -39,6 +42,7 @@ for example in "$dir/shared" "$dir/static" "env LIBSSDO=$dir/usr/lib/libssdo.so 
     diff "$dir/a" "$dir/b" || die "$example: other attributes"
     oiiotool -a "$dir/program.exr" "$dir/library.exr" --diff >/dev/null || die "$example: other pixels"
 done
-LIBSSDO="$dir/usr/lib/libssdo.so" "$python" samples/library/filter.py >"$dir/said" 2>&1 || die "arrays: $(cat "$dir/said")"
+# shellcheck disable=SC2086
+LIBSSDO="$dir/usr/lib/libssdo.so" $under "$python" samples/library/filter.py >"$dir/said" 2>&1 || die "arrays: $(cat "$dir/said")"
 grep -q '^occlusion 0\.9' "$dir/said" || die "a ball on a floor: $(cat "$dir/said")"
 echo "library: two examples, three ways to load it"

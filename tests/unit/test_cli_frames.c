@@ -1,4 +1,5 @@
 // Frame ranges and file patterns.
+#include <limits.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -76,6 +77,8 @@ static void patterns(void **state)
     assert_false(pattern_is("shot#3/a.exr")); // a folder's # is no frame place
     assert_false(pattern_is("100%.exr"));
     assert_false(pattern_path("a.####.exr", 1, path, 5));
+    assert_true(pattern_path("a.####.exr", INT_MIN, path, sizeof path));
+    assert_string_equal(path, "a.-2147483648.exr");
 }
 
 static void scanning(void **state)

@@ -7,6 +7,7 @@
 
 #include "base/half.h"
 #include "exr/write.h"
+#include "modules.h"
 #include "plugin/colour.h"
 #include "test_light.h"
 
@@ -157,7 +158,7 @@ static void an_odd_shape_is_warned_about(void **state)
 static void other_formats_go_through_the_module(void **state)
 {
     (void)state;
-    setenv("SSDO_PLUGIN_DIR", "build", 0);
+    use_built_modules();
     char module[512];
     snprintf(module, sizeof module, "%s/ssdo-images.so", getenv("SSDO_PLUGIN_DIR"));
     if (access(module, R_OK) != 0) skip();
@@ -215,7 +216,7 @@ static void what_is_no_map_is_refused(void **state)
 static void another_colour_space_is_converted(void **state)
 {
     (void)state;
-    setenv("SSDO_PLUGIN_DIR", "build", 0);
+    use_built_modules();
     static const char config[] = "ocio_profile_version: 1\n"
                                  "roles:\n"
                                  "  default: lin\n"
