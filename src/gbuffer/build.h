@@ -156,8 +156,10 @@ void positions_final(build *b);
 // normals.c
 // The file's normal at a pixel, unit, in camera space; false where it is zero or not finite.
 bool normals_read(const build *b, int x, int y, vec3 *n);
-// The file's normal at a pixel in camera space, decoded, of its stored length; 0 where it has none.
-vec3 normals_stored(const build *b, int x, int y);
+// The file's normal at a pixel as it is stored; 0 where it has none or is not finite.
+vec3 normals_code(const build *b, int x, int y);
+// What such a value means in camera space, of the length that it decodes to.
+vec3 normals_decode(const build *b, vec3 code);
 // |N| as stored (for coverage); 0 when absent or not finite.
 double normals_length(const build *b, int x, int y);
 // The normal of the surface through the neighbours' depths, facing the eye.

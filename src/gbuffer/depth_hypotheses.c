@@ -11,8 +11,11 @@
 enum { SAMPLES = 1200, LOOKED_AT = 40000, MOST = DEPTH_KINDS };
 static const double fits = 0.97;           // median cosine from which the normals confirm a kind
 static const double gain[2] = {2e-4, 0.3}; // of loss, and its share, that another kind must have over the renderer's
-static const double many_planes = 0.15;    // share of the looked-at pixels on planes from which they confirm a kind
-static const double bend = 1e-3;           // second difference over the first, below which a profile is a line
+static const double nearer = 0.25; // share of 1 - cosine, by the medians, that tells a better kind where edges spoil the means
+static const double most_ringing = 0.4,
+                    ringing_share = 0.05; // past 0..1, of values that a filter with negative lobes leaves at edges
+static const double many_planes = 0.15;   // share of the looked-at pixels on planes from which they confirm a kind
+static const double bend = 1e-3;          // second difference over the first, below which a profile is a line
 
 typedef struct trial {
     depth_code code;
@@ -23,7 +26,7 @@ typedef struct trial {
 // Raw values of the frame.
 typedef struct values {
     size_t looked_at, negative, zero, one, within; // within: 0 < v < 1
-    size_t beyond;                                 // v > 1, background left out
+    size_t beyond;                                 // v > 1, background left out, unless a filter's negative lobes explain it
 } values;
 
 static bool background(const build *b, double v)
@@ -34,13 +37,17 @@ static bool background(const build *b, double v)
 static values look(const build *b)
 {
     values s = {0};
+    size_t ringing = 0, below = 0;
     size_t pixels = (size_t)b->g->width * (size_t)b->g->height, stride = pixels / LOOKED_AT + 1;
     for (size_t i = 0; i < pixels; i += stride) {
         double v = plane_get(&b->depth, (int)(i % (size_t)b->g->width), (int)(i / (size_t)b->g->width));
         if (background(b, v)) continue;
         s.looked_at++, s.negative += v < 0.0, s.zero += v == 0.0, s.one += v == 1.0;
         s.within += v > 0.0 && 1.0 > v, s.beyond += v > 1.0;
+        ringing += v > 1.0 && v < 1.0 + most_ringing, below += v < 0.0 && v > -most_ringing;
     }
+    if (s.beyond == ringing && (double)ringing < ringing_share * (double)s.looked_at) s.beyond = 0;
+    if (s.negative == below && (double)below < ringing_share * (double)s.looked_at) s.negative = 0;
     return s;
 }
 
@@ -162,19 +169,29 @@ static int list_trials(const build *b, const values *s, trial list[MOST], bool *
     return n;
 }
 
+// Pixels at edges whose values a filter mixed spoil every kind's mean loss alike, but no median.
+static bool fits_better(const trial *a, const trial *b)
+{
+    if (!(a->loss < b->loss) || !(a->fit >= fits)) return false;
+    return b->loss - a->loss > gain[0] + gain[1] * b->loss ||
+           (b->fit < 1.0 - gain[0] && 1.0 - a->fit < nearer * (1.0 - b->fit) && 4.0 * (b->loss - a->loss) > a->fit - b->fit);
+}
+
+static bool more_planes(const trial *a, const trial *b) { return a->flat > many_planes && a->flat > 3.0 * b->flat; }
+
 // The normals decide if they fit one kind's surfaces; else the planes; else the renderer's usual kind.
 static int choose(const trial *list, int n, bool *confirmed)
 {
     int best = 0;
     for (int i = 1; i < n; i++)
-        if (list[i].loss < list[best].loss && list[0].loss - list[i].loss > gain[0] + gain[1] * list[0].loss &&
-            list[i].fit >= fits)
-            best = i;
+        if (list[i].loss < list[best].loss && fits_better(&list[i], &list[0])) best = i;
     *confirmed = list[best].fit >= fits;
+    for (int i = 0; i < n && *confirmed; i++) // as good by the normals
+        if (list[i].fit >= fits && list[i].loss < list[best].loss + gain[0] && more_planes(&list[i], &list[best])) best = i;
     if (*confirmed) return best;
     best = 0;
     for (int i = 1; i < n; i++)
-        if (list[i].flat > list[best].flat && list[i].flat > many_planes && list[i].flat > 3.0 * list[0].flat) best = i;
+        if (list[i].flat > list[best].flat && more_planes(&list[i], &list[0])) best = i;
     *confirmed = list[best].flat > many_planes;
     return best;
 }

@@ -20,8 +20,9 @@ static const double odd_angle = 0.035;    // radians that normals are off the su
 static const double step_of_depth = 0.05; // of the depth, that counts as much as normals at right angles
 
 typedef struct stored {
-    vec3 p; // camera space; depth alone: (0, 0, z or 1 / z)
-    vec3 n; // as long as it is stored; 0 without
+    vec3 p;    // camera space; depth alone: (0, 0, what the file's values are linear in)
+    vec3 code; // of the normal, as it is stored: what the filter took the mean of
+    vec3 n;    // decoded, in camera space, of the length that this gives; 0 without
     double alpha;
     bool clean;  // one surface
     vec3 mended; // normal
@@ -32,16 +33,27 @@ typedef struct repair {
     stored *pixels;
     stored nothing; // what the background stores
     bool inverse;   // depth alone whose values are linear in 1 / z
+    bool radial;    // depth alone: distance from the eye
     bool lengths;   // the normals have a length to go by
 } repair;
 
 static bool inside(const build *b, int x, int y) { return x >= 0 && y >= 0 && x < b->g->width && y < b->g->height; }
 
-// The values of a surface at depth z on the ray of (x, y).
+static double per_depth(const repair *r, int x, int y) { return r->radial ? v3_length(build_ray(&r->b->g->camera, x, y)) : 1.0; }
+
+// The values of a surface at planar depth z on the ray of (x, y).
 static vec3 value_at(const repair *r, int x, int y, double z)
 {
     if (r->b->has_position) return build_point(&r->b->g->camera, x, y, z);
-    return v3(0, 0, r->inverse ? 1.0 / z : z);
+    return v3(0, 0, r->inverse ? 1.0 / z : z * per_depth(r, x, y));
+}
+
+// And back; 0 where there is none.
+static double depth_of(const repair *r, vec3 p, int x, int y)
+{
+    if (r->b->has_position) return p.z;
+    if (r->inverse) return p.z > 0.0 ? 1.0 / p.z : 0.0;
+    return p.z / per_depth(r, x, y);
 }
 
 static stored read_pixel(const repair *r, int x, int y)
@@ -56,21 +68,17 @@ static stored read_pixel(const repair *r, int x, int y)
         double z = build_depth(b, x, y);
         if (z > 0.0 && isfinite(z)) s.p.z = r->inverse ? 1.0 / z : z;
     }
-    s.n = normals_stored(b, x, y);
+    s.code = normals_code(b, x, y);
+    s.n = normals_decode(b, s.code);
     s.alpha = isfinite(alpha) ? alpha : 0.0;
     return s;
-}
-
-static double depth_of(const repair *r, const stored *s)
-{
-    return r->b->has_position || !r->inverse ? s->p.z : s->p.z > 0.0 ? 1.0 / s->p.z : 0.0;
 }
 
 // Where a pixel's surface lies in camera space.
 static vec3 place_of(const repair *r, int x, int y)
 {
     const stored *s = &r->pixels[build_index(r->b, x, y)];
-    return r->b->has_position ? s->p : build_point(&r->b->g->camera, x, y, depth_of(r, s));
+    return r->b->has_position ? s->p : build_point(&r->b->g->camera, x, y, depth_of(r, s->p, x, y));
 }
 
 // Whether the pixel and its neighbour lie on one smooth surface. With normals: the line between them is perpendicular to the mean
@@ -79,8 +87,9 @@ static vec3 place_of(const repair *r, int x, int y)
 static bool continues(const repair *r, int x, int y, int dx, int dy)
 {
     const build *b = r->b;
-    if (!inside(b, x + dx, y + dy) || !(depth_of(r, &r->pixels[build_index(b, x + dx, y + dy)]) > 0.0)) return false;
+    if (!inside(b, x + dx, y + dy)) return false;
     vec3 here = place_of(r, x, y), next = place_of(r, x + dx, y + dy), step = v3_sub(next, here);
+    if (!(next.z > 0.0)) return false;
     if (r->lengths) {
         const stored *s = &r->pixels[build_index(b, x, y)], *q = s + (dx + dy * b->g->width);
         if (fabs(v3_length(q->n) - 1.0) > 2.0 * odd_length) return false;
@@ -97,7 +106,7 @@ static bool is_clean(const repair *r, int x, int y)
 {
     const build *b = r->b;
     const stored *s = &r->pixels[build_index(b, x, y)];
-    if (!(b->g->depth[build_index(b, x, y)] > 0.0f) || !(depth_of(r, s) > 0.0)) return false;
+    if (!(b->g->depth[build_index(b, x, y)] > 0.0f) || !(place_of(r, x, y).z > 0.0)) return false;
     if (r->lengths && fabs(v3_length(s->n) - 1.0) > odd_length) return false;
     if (b->alpha.data && fabs(s->alpha - 1.0) > odd_length) return false;
     return (continues(r, x, y, -1, 0) || continues(r, x, y, 1, 0)) && (continues(r, x, y, 0, -1) || continues(r, x, y, 0, 1));
@@ -123,7 +132,7 @@ static double carried(const build *b, int u, int v, vec3 n, int x, int y)
 
 // What one of the surfaces around a pixel would store there.
 typedef struct side {
-    vec3 p, n;
+    vec3 p, code, n;
     double alpha, z; // z: planar depth; 0 the background
     int u, v;        // of the clean pixel
 } side;
@@ -144,12 +153,13 @@ static int gather_sides(const repair *r, int x, int y, side list[SIDES])
             size_t i = build_index(b, u, v);
             open = open || !(b->g->depth[i] > 0.0f) || (b->alpha.data && r->pixels[i].alpha < 0.5);
             if (!r->pixels[i].clean) continue;
-            side s = {.n = r->pixels[i].n, .alpha = 1.0, .z = carried(b, u, v, made_normal(b, u, v), x, y), .u = u, .v = v};
+            side s = {.code = r->pixels[i].code, .n = r->pixels[i].n, .alpha = 1.0, .u = u, .v = v};
+            s.z = carried(b, u, v, made_normal(b, u, v), x, y);
             s.p = value_at(r, x, y, s.z);
             list[count++] = s;
             break;
         }
-    if (open && count > 0) list[count++] = (side){.p = r->nothing.p, .n = r->nothing.n};
+    if (open && count > 0) list[count++] = (side){.p = r->nothing.p, .code = r->nothing.code, .n = r->nothing.n};
     return count;
 }
 
@@ -165,10 +175,10 @@ typedef struct values {
     double v[7];
 } values;
 
-static values values_of(const repair *r, double scale, vec3 p, vec3 n, double alpha)
+static values values_of(const repair *r, double scale, vec3 p, vec3 code, double alpha)
 {
-    double weight = r->b->alpha.data ? 2.0 : 0.0;
-    return (values){{p.x / scale, p.y / scale, p.z / scale, n.x, n.y, n.z, weight * alpha}};
+    double weight = r->b->alpha.data ? 2.0 : 0.0, unit = r->b->normal_encoding == NORMAL_SIGNED ? 1.0 : 2.0;
+    return (values){{p.x / scale, p.y / scale, p.z / scale, unit * code.x, unit * code.y, unit * code.z, weight * alpha}};
 }
 
 static double pixel_size(const build *b, double z)
@@ -176,37 +186,53 @@ static double pixel_size(const build *b, double z)
     return (b->g->camera.kind == CAMERA_PERSPECTIVE ? z : 1.0) / b->g->camera.fx;
 }
 
-// The far side's share, if the normal of the near one is what makes up the rest: (N - share far) is (1 - share) long.
-static double share_by_length(const stored *s, const side *far)
+// The near side's normal if the far one's share is taken out, not normalised.
+static vec3 without(const repair *r, const stored *s, const side *far, double share)
+{
+    return normals_decode(r->b, v3_scale(v3_sub(s->code, v3_scale(far->code, share)), 1.0 / (1.0 - share)));
+}
+
+// The far side's share, if the normal of the near one is what makes up the rest: without it, it has length 1. If values are
+// stored as they are, or as 0..1, (N - share far) is (1 - share) long; through a curve that is where the search begins.
+static double share_by_length(const repair *r, const stored *s, const side *far)
 {
     double a = v3_dot(far->n, far->n) - 1.0, b = 1.0 - v3_dot(s->n, far->n), c = v3_dot(s->n, s->n) - 1.0;
     double root = b * b - a * c;
-    return root >= 0.0 && b + sqrt(root) > 0.2 ? -c / (b + sqrt(root)) : (double)NAN;
+    if (!(root >= 0.0 && b + sqrt(root) > 0.2)) return (double)NAN;
+    double share = -c / (b + sqrt(root));
+    const double step = 1e-3;
+    for (int k = 0; k < 4 && r->b->normal_encoding > NORMAL_UNORM && share > -0.4 && share < 0.9; k++) {
+        double off = v3_length(without(r, s, far, share)) - 1.0;
+        share -= off * step / (v3_length(without(r, s, far, share + step)) - 1.0 - off);
+    }
+    return share;
 }
 
 static mixture mix(const repair *r, const stored *s, const side *near, const side *far, bool turns)
 {
     mixture m = {.near = near, .far = far, .n = near->n, .rest = INFINITY};
     double scale = step_of_depth * near->z, d2 = 0.0;
-    if (r->inverse && !r->b->has_position) scale = step_of_depth / near->z;
-    values f = values_of(r, scale, s->p, s->n, s->alpha), a = values_of(r, scale, near->p, near->n, near->alpha),
-           b = values_of(r, scale, far->p, far->n, far->alpha);
+    if (r->inverse) scale = step_of_depth / near->z;
+    values f = values_of(r, scale, s->p, s->code, s->alpha), a = values_of(r, scale, near->p, near->code, near->alpha),
+           b = values_of(r, scale, far->p, far->code, far->alpha);
     for (int k = 0; k < 7; k++) m.share += (f.v[k] - a.v[k]) * (b.v[k] - a.v[k]), d2 += (b.v[k] - a.v[k]) * (b.v[k] - a.v[k]);
     m.share = d2 > 1e-4 ? m.share / d2 : 0.0;
     if (far->alpha < 1.0 && r->b->alpha.data)
         m.share = 1.0 - s->alpha;
     else if (turns)
-        m.share = share_by_length(s, far);
+        m.share = share_by_length(r, s, far);
     if (!(m.share > -0.3 && m.share < 1.3)) return m;
+    m.rest = 0.0;
     if (turns) {
-        if (m.share > 0.8) return m;
-        m.n = v3_normalize(v3_sub(s->n, v3_scale(far->n, m.share)));
-        a.v[3] = m.n.x, a.v[4] = m.n.y, a.v[5] = m.n.z;
+        if (m.share > 0.8) return m.rest = INFINITY, m;
+        vec3 n = without(r, s, far, m.share);
+        double odd = (1.0 - m.share) * (v3_length(n) - 1.0);
+        m.n = v3_normalize(n);
+        m.rest = turn * v3_dot(v3_sub(m.n, near->n), v3_sub(m.n, near->n)) + odd * odd;
     }
-    m.rest = turns ? turn * v3_dot(v3_sub(m.n, near->n), v3_sub(m.n, near->n)) : 0.0;
     for (int k = 0; k < 7; k++) {
         double off = f.v[k] - (1.0 - m.share) * a.v[k] - m.share * b.v[k];
-        m.rest += off * off;
+        if (!turns || k < 3 || k > 5) m.rest += off * off; // the normal's are `odd`
     }
     return m;
 }
@@ -273,8 +299,9 @@ static double near_depth(const repair *r, const stored *s, const mixture *m, vec
     const side *own = m->near, *far = m->far;
     double z = carried(b, own->u, own->v, v3_normalize(v3_add(at, clean)), x, y);
     double by_plane = carried(b, own->u, own->v, clean, x, y);
-    double seen = (s->p.z - m->share * far->p.z) / (1.0 - m->share), behind = far->p.z;
-    if (r->inverse && !b->has_position) { seen = 1.0 / seen, behind = far->p.z > 0.0 ? 1.0 / far->p.z : 2.0 * z; }
+    vec3 alone = v3_scale(v3_sub(s->p, v3_scale(far->p, m->share)), 1.0 / (1.0 - m->share));
+    double seen = depth_of(r, alone, x, y), behind = depth_of(r, far->p, x, y);
+    if (r->inverse && !(behind > 0.0)) behind = 2.0 * z;
     if (!(seen > 0.0) || !isfinite(seen)) return z;
     double cosine = fmax(0.1, fabs(v3_dot(at, v3_normalize(build_ray(&b->g->camera, x, y)))));
     double slope = sqrt(1.0 / (cosine * cosine) - 1.0), share = fabs(m->share), pixel = pixel_size(b, z);
@@ -326,7 +353,8 @@ static void learn_nothing(repair *r)
             vec3 p = b->has_position ? build_position(b, x, y) : v3(0, 0, 0);
             double alpha = plane_get(&b->alpha, x, y);
             if (b->g->depth[build_index(b, x, y)] > 0.0f || v3_dot(p, p) != 0.0 || alpha > 0.0) continue;
-            r->nothing.n = normals_stored(b, x, y);
+            r->nothing.code = normals_code(b, x, y);
+            r->nothing.n = normals_decode(b, r->nothing.code);
             return;
         }
 }
@@ -377,7 +405,8 @@ bool filtered_mend(build *b)
     repair r = {.b = b, .pixels = mem_pixels(total, sizeof *r.pixels, b->e)};
     if (!r.pixels) return false;
     const depth_kind k = b->depth_code.kind;
-    r.inverse = k == DEPTH_INVERSE || k == DEPTH_ZBUFFER || k == DEPTH_REVERSED;
+    r.inverse = !b->has_position && (k == DEPTH_INVERSE || k == DEPTH_ZBUFFER || k == DEPTH_REVERSED);
+    r.radial = !b->has_position && b->g->depth_kind == DEPTH_RADIAL && b->g->camera.kind == CAMERA_PERSPECTIVE;
     if (b->has_position)
         r.nothing.p = camera_from_world(&b->g->camera, v3(0, 0, 0));
     else if (depth_needs_range(k))

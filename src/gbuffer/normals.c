@@ -18,10 +18,15 @@ double normals_length(const build *b, int x, int y)
     return v3_finite(n) ? v3_length(n) : 0.0;
 }
 
-vec3 normals_stored(const build *b, int x, int y)
+vec3 normals_code(const build *b, int x, int y)
 {
-    vec3 v = b->has_normal ? m3_apply(b->normal_to_camera, encoding_decode(b->normal_encoding, stored(b, x, y))) : v3(0, 0, 0);
+    vec3 v = b->has_normal ? stored(b, x, y) : v3(0, 0, 0);
     return v3_finite(v) ? v : v3(0, 0, 0);
+}
+
+vec3 normals_decode(const build *b, vec3 code)
+{
+    return b->has_normal ? m3_apply(b->normal_to_camera, encoding_decode(b->normal_encoding, code)) : v3(0, 0, 0);
 }
 
 bool normals_read(const build *b, int x, int y, vec3 *n)

@@ -277,8 +277,47 @@ static void filtered_against_closest(void **state)
     assert_true(worst[0] < 0.04 && worst[1] < 0.03 && most < 2.0);
 }
 
+// A filter takes means of what is stored: distances from the eye, 1 / z, values within 0..1 that its negative lobes leave,
+// normals behind a display curve. The kind of depth is found although the edges fit none.
+static void filtered_as_stored(void **state)
+{
+    static const struct {
+        reading_space position;
+        normal_encoding encoding;
+        depth_kind depth;
+        reading_filter filter;
+    } forms[] = {
+        {ABSENT, NORMAL_SIGNED, DEPTH_RADIAL, FILTER_BOX},    {ABSENT, NORMAL_SIGNED, DEPTH_RADIAL, FILTER_GAUSS},
+        {ABSENT, NORMAL_SIGNED, DEPTH_INVERSE, FILTER_BOX},   {ABSENT, NORMAL_UNORM, DEPTH_INVERSE, FILTER_GAUSS},
+        {ABSENT, NORMAL_UNORM, DEPTH_INVERTED, FILTER_LOBES}, {ABSENT, NORMAL_UNORM, DEPTH_ZBUFFER, FILTER_LOBES},
+        {EYE_BACK, NORMAL_SRGB, DEPTH_AUTO, FILTER_BOX},      {EYE_BACK, NORMAL_DEGAMMA, DEPTH_AUTO, FILTER_BOX},
+        {WORLD, NORMAL_GAMMA, DEPTH_AUTO, FILTER_LOBES},      {WORLD, NORMAL_DESRGB, DEPTH_PLANAR, FILTER_GAUSS},
+    };
+    readings *r = *state;
+    double worst = 0.0;
+    open_scene(r, SCENE_FLAT, 1);
+    for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+        const reading_case c = {.scene = SCENE_FLAT,
+                                .axis = 1,
+                                .turn = 20.0,
+                                .position = forms[i].position,
+                                .normal = WORLD,
+                                .encoding = forms[i].encoding,
+                                .depth = forms[i].depth,
+                                .filter = forms[i].filter};
+        char name[256];
+        double rms;
+        reading_name(&c, name, sizeof name);
+        if (judge(r, &c, &rms) != RIGHT) fail_msg("rms %.4f: %s", rms, name);
+        worst = fmax(worst, rms);
+    }
+    close_scene(r);
+    printf("figure: filtered passes of every kind of value: at most %.4f rms\n", worst);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_combination), cmocka_unit_test(filtered_against_closest)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_combination), cmocka_unit_test(filtered_against_closest),
+                                       cmocka_unit_test(filtered_as_stored)};
     return cmocka_run_group_tests(tests, open_readings, close_readings);
 }
