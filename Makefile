@@ -114,8 +114,8 @@ $(BUILD)/lib/libssdo.a: $(OBJ)
 	@ld -r -o $(@D)/ssdo.o $^ && objcopy --localize-hidden $(@D)/ssdo.o && ar rcsD $@ $(@D)/ssdo.o && rm $(@D)/ssdo.o
 
 # A compiler's warnings stay in a file beside what it made, so that one build serves the program, the tests and `make lint`.
-KEEP_SAID = 2>$@.said; code=$$?; cat $@.said >&2; exit $$code
-NO_WARNINGS = ! find $(BUILD)/src $(BUILD)/tests $(BUILD)/*.said -name '*.said' -size +0 -exec cat {} + 2>/dev/null | grep .
+KEEP_SAID = 2>$@.warnings; code=$$?; cat $@.warnings >&2; exit $$code
+NO_WARNINGS = ! find $(BUILD)/src $(BUILD)/tests $(BUILD)/*.warnings -name '*.warnings' -size +0 -exec cat {} + 2>/dev/null | grep .
 
 # Objects are made again when the compiler or its flags change.
 FLAGS     = $(CC) -fPIC $(CFLAGS) $(SANFLAGS) $(EXTRA_CFLAGS)
