@@ -114,7 +114,7 @@ $(BUILD)/lib/libssdo.a: $(OBJ)
 	@ld -r -o $(@D)/ssdo.o $^ && objcopy --localize-hidden $(@D)/ssdo.o && ar rcsD $@ $(@D)/ssdo.o && rm $(@D)/ssdo.o
 
 # A compiler's warnings stay in a file beside what it made, so that one build serves the program, the tests and `make lint`.
-KEEP_SAID = 2>$@.warnings; code=$$?; cat $@.warnings >&2; exit $$code
+KEEP_WARNINGS = 2>$@.warnings; code=$$?; cat $@.warnings >&2; exit $$code
 NO_WARNINGS = ! find $(BUILD)/src $(BUILD)/tests $(BUILD)/*.warnings -name '*.warnings' -size +0 -exec cat {} + 2>/dev/null | grep .
 
 # Objects are made again when the compiler or its flags change.
@@ -125,7 +125,7 @@ $(BUILD)/flags: always
 $(BUILD)/%.o: %.c $(BUILD)/flags | deps-stamp
 	@mkdir -p $(@D)
 	@echo "  cc   $<"
-	$(Q)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $< $(KEEP_SAID)
+	$(Q)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $< $(KEEP_WARNINGS)
 
 # What names the version is compiled again when it changes, and nothing else is.
 VERSIONED := $(patsubst %.c,$(BUILD)/%.o,$(shell grep -l SSDO_VERSION src/*.c src/*/*.c))
@@ -140,7 +140,7 @@ $(BUILD)/shaders.c: $(GLSL) shaders/embed.sh
 	@mkdir -p $(@D)
 	$(Q)sh shaders/embed.sh shaders $(GLSL) >$@.tmp && mv $@.tmp $@
 $(BUILD)/shaders.o: $(BUILD)/shaders.c src/gpu/shaders.h $(BUILD)/flags
-	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $< $(KEEP_SAID)
+	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $< $(KEEP_WARNINGS)
 
 # The rows of all methods, of which the default one is named here.
 METHODS  := $(wildcard src/passes/*.c)
@@ -148,13 +148,13 @@ $(BUILD)/methods.c: $(METHODS) src/passes/methods.sh
 	@mkdir -p $(@D)
 	$(Q)LC_ALL=C sh src/passes/methods.sh arc $(sort $(METHODS)) >$@.tmp && mv $@.tmp $@
 $(BUILD)/methods.o: $(BUILD)/methods.c src/passes/method.h
-	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $< $(KEEP_SAID)
+	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $< $(KEEP_WARNINGS)
 
 $(BUILD)/decides.c: $(DECIDES) src/pipeline/decides.sh
 	@mkdir -p $(@D)
 	$(Q)LC_ALL=C sh src/pipeline/decides.sh $(DECIDES) >$@.tmp && mv $@.tmp $@
 $(BUILD)/decides.o: $(BUILD)/decides.c src/pipeline/decides.h $(BUILD)/flags
-	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $< $(KEEP_SAID)
+	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $< $(KEEP_WARNINGS)
 
 # OpenImageIO, OpenColorIO and Embree live in modules of their own, opened on demand: linking OpenImageIO costs every run 290 ms.
 $(BUILD)/ssdo-images.so: LIBRARY = $$(pkg-config --cflags --libs OpenImageIO) $(call RPATHS,OpenImageIO)
@@ -164,7 +164,7 @@ $(BUILD)/ssdo-trace.so: src/plugin/embree.h
 $(BUILD)/ssdo-%.so: src/plugin/%_shim.cpp src/plugin/%_abi.h | deps-stamp
 	@mkdir -p $(@D)
 	@echo "  c++  $@"
-	$(Q)$(CXX) $(ALL_CXXFLAGS) -shared -o $@ $< $(LIBRARY) $(LDFLAGS) $(KEEP_SAID)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -shared -o $@ $< $(LIBRARY) $(LDFLAGS) $(KEEP_WARNINGS)
 
 $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(TESTLIB) $(BUILD)/rooms.a
 	@mkdir -p $(@D)
@@ -183,7 +183,7 @@ $(BUILD)/tests/fuzz_%: $(BUILD)/tests/fuzz/fuzz_%.o $(BUILD)/tests/fuzz/replay.o
 FAULT    := $(BUILD)/tests/fault.so
 $(FAULT): tests/hard/fault.c
 	@mkdir -p $(@D)
-	$(Q)$(CC) -std=gnu17 -D_GNU_SOURCE $(WARN) -Wno-pedantic -O1 -g -shared -fPIC -o $@ $< -ldl $(KEEP_SAID)
+	$(Q)$(CC) -std=gnu17 -D_GNU_SOURCE $(WARN) -Wno-pedantic -O1 -g -shared -fPIC -o $@ $< -ldl $(KEEP_WARNINGS)
 
 # Order-only: checks once per make run that the packages of the build are there.
 .PHONY: deps-stamp
@@ -281,7 +281,8 @@ LISTS     := $(BUILD)/tests/list_variants
 $(LISTS): $(BUILD)/tests/limits/list_variants.o $(BUILD)/rooms.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
-unit: $(UNIT) $(HARD) $(REPLAY) $(FAULT) $(LISTS) $(GPU_TOOLS)
+# The benches are compiled, so that they still do.
+unit: $(UNIT) $(HARD) $(REPLAY) $(FAULT) $(LISTS) $(GPU_TOOLS) $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/bench/*.c))
 
 # Real schedulers on this machine (tests/farm/check.sh); what it starts, it stops.
 .PHONY: check-farm

@@ -55,8 +55,7 @@ void main() {
     imageStore(radiance_image, p, vec4(radiance, 0.0));
 #endif
 #ifdef VISIBILITY
-    const vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
-    float all = surface ? dot(luminance, open_light(normal_at(p))) : 0.0;
-    imageStore(visibility_image, p, vec4(all > 0.0 ? min(1.0, dot(luminance, radiance) / all) : 1.0));
+    float all = surface ? dot(LUMINANCE, open_light(normal_at(p))) : 0.0;
+    imageStore(visibility_image, p, vec4(all > 0.0 ? min(1.0, dot(LUMINANCE, radiance) / all) : 1.0));
 #endif
 }

@@ -50,7 +50,7 @@ void main() {
         vec3 direction = to_map(s.direction);
         vec3 L = radiance_from(direction, params.level < 0.0 ? map_level(direction, solid_angle) : params.level);
         light += visible * s.cosine * L;
-        float weight = dot(L, vec3(0.2126, 0.7152, 0.0722)) * s.cosine;
+        float weight = dot(L, LUMINANCE) * s.cosine;
         all_light += weight;
         open_light += visible * weight;
 #endif

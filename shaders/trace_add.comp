@@ -26,6 +26,6 @@ void main() {
         all += gains[j].rgb;
         if (hits[j].triangle == HIT_NOTHING) light += gains[j].rgb;
     }
-    imageStore(radiance_image, p, imageLoad(radiance_image, p) + vec4(light, dot(all, vec3(0.2126, 0.7152, 0.0722))));
+    imageStore(radiance_image, p, imageLoad(radiance_image, p) + vec4(light, dot(all, LUMINANCE)));
 #endif
 }

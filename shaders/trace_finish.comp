@@ -23,7 +23,7 @@ void main() {
 #ifdef LIGHT
     vec4 light = imageLoad(radiance_image, p);
 #ifdef VISIBILITY
-    float lit = dot(light.rgb, vec3(0.2126, 0.7152, 0.0722));
+    float lit = dot(light.rgb, LUMINANCE);
     imageStore(visibility_image, p, vec4(light.w > 0.0 ? lit / light.w : 1.0));
 #endif
     imageStore(radiance_image, p, vec4(light.rgb * share, 0.0));

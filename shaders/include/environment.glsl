@@ -2,8 +2,6 @@
 
 uniform sampler2D environment_map;
 
-const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722); // of linear Rec. 709
-
 vec2 map_uv(vec3 direction) {
     float around = fast_atan(abs(direction.y), direction.x) * (direction.y < 0.0 ? -1.0 : 1.0);
     float sine = sqrt(max(0.0, 1.0 - direction.z * direction.z));

@@ -24,6 +24,7 @@ PICTURE(r32f, depth_image);
 PICTURE(rgba32f, normal_image);
 
 const float PI = 3.14159265358979;
+const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722); // of linear Rec. 709
 const float ULP = 1.1920929e-7; // of 1.0 in float
 
 #ifdef FRAGMENT // what is drawn is the tile

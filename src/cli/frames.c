@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/sort.h"
 
 static bool add(frame_list *l, int frame, error *e)
 {
@@ -73,7 +74,7 @@ static bool drop_repeats(frame_list *l, error *e)
     int *sorted = mem_zero((size_t)l->count, sizeof *sorted, e);
     if (!sorted) return false;
     memcpy(sorted, l->frames, (size_t)l->count * sizeof *sorted);
-    qsort(sorted, (size_t)l->count, sizeof *sorted, by_frame);
+    sort_ints(sorted, (size_t)l->count);
     bool repeats = false;
     for (int i = 1; i < l->count; i++) repeats |= sorted[i] == sorted[i - 1];
     int kept = 0;
@@ -248,6 +249,6 @@ bool pattern_scan(const char *pattern, frame_list *out, error *e)
         closedir(d);
     }
     if (!ok) frames_free(out);
-    if (out->count) qsort(out->frames, (size_t)out->count, sizeof *out->frames, by_frame);
+    if (out->count) sort_ints(out->frames, (size_t)out->count);
     return ok;
 }

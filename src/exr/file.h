@@ -16,6 +16,7 @@
 #include <stdint.h>
 
 #include "base/error.h"
+#include "base/half.h"
 
 typedef enum sample_type { SAMPLE_UINT = 0, SAMPLE_HALF = 1, SAMPLE_FLOAT = 2 } sample_type; // OpenEXR's own numbers
 
@@ -26,6 +27,12 @@ typedef struct box2 {
 } box2; // inclusive, as in the file
 
 static inline size_t sample_size(sample_type t) { return t == SAMPLE_HALF ? 2u : 4u; }
+// Element i of a channel's data.
+static inline float sample_value(sample_type t, const void *data, size_t i)
+{
+    if (t == SAMPLE_HALF) return half_to_float(((const uint16_t *)data)[i]);
+    return t == SAMPLE_FLOAT ? ((const float *)data)[i] : (float)((const uint32_t *)data)[i];
+}
 static inline int box2_width(box2 b) { return b.x1 - b.x0 + 1; }
 static inline int box2_height(box2 b) { return b.y1 - b.y0 + 1; }
 static inline bool box2_equal(box2 a, box2 b) { return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1; }

@@ -4,12 +4,12 @@
 
 #include "base/mem.h"
 
-static double luminance(const env_level *l, int x, int y)
+static double luminance_at(const env_level *l, int x, int y)
 {
     x = (x + l->width) % l->width;
     y = y < 0 ? 0 : y >= l->height ? l->height - 1 : y;
     const float *c = l->rgba + 4 * ((size_t)y * (size_t)l->width + (size_t)x);
-    return 0.2126 * (double)c[0] + 0.7152 * (double)c[1] + 0.0722 * (double)c[2];
+    return luminance((double)c[0], (double)c[1], (double)c[2]);
 }
 
 // Mean over the texel of the bilinear interpolation between texel centres: without the neighbours' share, the dark texel beside
@@ -19,7 +19,7 @@ static double mean_of_lookup(const env_level *l, int x, int y)
     static const double tent[3] = {0.125, 0.75, 0.125};
     double sum = 0.0;
     for (int j = -1; j <= 1; j++)
-        for (int i = -1; i <= 1; i++) sum += tent[j + 1] * tent[i + 1] * luminance(l, x + i, y + j);
+        for (int i = -1; i <= 1; i++) sum += tent[j + 1] * tent[i + 1] * luminance_at(l, x + i, y + j);
     return sum;
 }
 

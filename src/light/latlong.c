@@ -140,11 +140,6 @@ static box2 sphere_window(const exrio_part *part)
     return cropped ? part->display_window : part->data_window;
 }
 
-static float sample(const exrio_channel *channel, size_t i)
-{
-    return channel->type == SAMPLE_HALF ? half_to_float(((const uint16_t *)channel->data)[i]) : ((const float *)channel->data)[i];
-}
-
 static bool gather(reader *r, const exrio_part *part, const int channels[3])
 {
     box2 data = part->data_window, window = sphere_window(part);
@@ -156,8 +151,8 @@ static bool gather(reader *r, const exrio_part *part, const int channels[3])
         memset(row, 0, across * 3 * sizeof *row);
         for (size_t x = 0; there && x < w; x++)
             for (size_t c = 0; c < 3; c++)
-                row[3 * (x + (size_t)(data.x0 - window.x0)) + c] =
-                    sample(&part->channels[channels[c]], (size_t)(y - data.y0) * w + x);
+                row[3 * (x + (size_t)(data.x0 - window.x0)) + c] = sample_value(
+                    part->channels[channels[c]].type, part->channels[channels[c]].data, (size_t)(y - data.y0) * w + x);
         ok = give(r, y - window.y0, row);
     }
     free(row);

@@ -18,9 +18,9 @@ typedef struct finder {
     double threshold, total; // luminance; flux
 } finder;
 
-static double luminance(const float *c) { return 0.2126 * (double)c[0] + 0.7152 * (double)c[1] + 0.0722 * (double)c[2]; }
+static double luminance_of(const float *c) { return luminance((double)c[0], (double)c[1], (double)c[2]); }
 
-static bool bright(const finder *f, int i) { return luminance(f->map->rgba + 4 * (size_t)i) > f->threshold; }
+static bool bright(const finder *f, int i) { return luminance_of(f->map->rgba + 4 * (size_t)i) > f->threshold; }
 
 // The connected bright texels around one, the map's sides joined.
 static void grow(finder *f, int start)
@@ -53,7 +53,7 @@ static sun measure(const finder *f)
     for (int m = 0; m < f->member_count; m++) {
         int i = f->members[m];
         const float *c = f->map->rgba + 4 * (size_t)i;
-        double y = luminance(c), w = env_texel_solid_angle(f->map->width, f->map->height, i / f->map->width);
+        double y = luminance_of(c), w = env_texel_solid_angle(f->map->width, f->map->height, i / f->map->width);
         double share = 1.0 - f->threshold / y;
         for (int k = 0; k < 3; k++) s.flux[k] += (double)c[k] * share * w;
         s.solid_angle += w;
@@ -63,7 +63,7 @@ static sun measure(const finder *f)
     return s;
 }
 
-static double flux_of(const sun *s) { return 0.2126 * s->flux[0] + 0.7152 * s->flux[1] + 0.0722 * s->flux[2]; }
+static double flux_of(const sun *s) { return luminance(s->flux[0], s->flux[1], s->flux[2]); }
 
 typedef struct candidate {
     sun s;
@@ -99,7 +99,7 @@ static void take_out(finder *f, int start, float *rgb)
     grow(f, start);
     for (int m = 0; m < f->member_count; m++) {
         size_t i = (size_t)f->members[m];
-        double share = f->threshold / luminance(f->map->rgba + 4 * i);
+        double share = f->threshold / luminance_of(f->map->rgba + 4 * i);
         for (size_t k = 0; k < 3; k++) rgb[3 * i + k] = (float)((double)f->map->rgba[4 * i + k] * share);
     }
 }
@@ -109,7 +109,7 @@ bool sun_split(const environment *env, int threads, sun_set *suns, environment *
     bool ok = false;
     const env_level *map = &env->levels[0];
     size_t texels = (size_t)map->width * (size_t)map->height;
-    double mean = 0.2126 * env->mean[0] + 0.7152 * env->mean[1] + 0.0722 * env->mean[2];
+    double mean = luminance(env->mean[0], env->mean[1], env->mean[2]);
     finder f = {.map = map, .threshold = BRIGHT * mean, .total = 4.0 * M_PI * mean};
     float *rgb = mem_pixels(texels, 3 * sizeof *rgb, e);
     *suns = (sun_set){0};

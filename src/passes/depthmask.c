@@ -1,17 +1,12 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/sort.h"
 #include "passes/params.h"
 #include "passes/pass.h"
 
 // Standard deviation of the Gaussian, as a share of the picture's diagonal, so that the look does not depend on resolution.
 static const double SIGMA = 0.01;
-
-static int by_value(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
 
 // The depths that become 0 and 1: the 2nd and 98th percentile, so that no stray pixel sets the scale of the whole picture.
 static void depth_range(const gbuffer *gb, float *near, float *far)
@@ -23,7 +18,7 @@ static void depth_range(const gbuffer *gb, float *near, float *far)
         if (gb->depth[i] > 0.0f && seen++ % stride == 0) depths[n++] = gb->depth[i];
     *near = *far = 0.0f;
     if (n == 0) return;
-    qsort(depths, n, sizeof *depths, by_value);
+    sort_floats(depths, n);
     *near = depths[n * 2 / 100];
     *far = depths[n * 98 / 100];
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/sort.h"
 
 static const double DENSITY = 3.0;  // cells for a triangle
 static const double SHARE = 0.25;   // of the triangles may lie off the crowd on each side of it
@@ -62,12 +63,6 @@ static double diagonal(const bounds *b)
     return sqrt(pow(b->high[0] - b->low[0], 2) + pow(b->high[1] - b->low[1], 2) + pow(b->high[2] - b->low[2], 2));
 }
 
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Where most of a level's triangles are: between two quantiles of their middles, with as much again around it.
 static bounds crowd(const builder *b, int level)
 {
@@ -82,7 +77,7 @@ static bounds crowd(const builder *b, int level)
             bounds o = bounds_of(b, t);
             middle[n++] = 0.5 * (o.low[k] + o.high[k]);
         }
-        qsort(middle, n, sizeof *middle, by_value);
+        sort_doubles(middle, n);
         double low = middle[(size_t)(SHARE * (double)(n - 1))], high = middle[(size_t)((1.0 - SHARE) * (double)(n - 1))];
         box.low[k] = low - 0.5 * (high - low), box.high[k] = high + 0.5 * (high - low);
     }

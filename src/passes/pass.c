@@ -4,18 +4,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "gpu/transfer.h"
 #include "passes/params.h"
 #include "passes/variants.h"
-
-static double now(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
 
 static void fill_block(frame_block *b, const gbuffer *gb, const environment *env, mat3 world_from_camera)
 {
@@ -74,7 +67,7 @@ bool pass_upload_environment(gpu *g, const environment *env, gpu_image *out, err
 
 bool pass_begin(pass_context *c, error *e)
 {
-    double wall = now(CLOCK_MONOTONIC), cpu = now(CLOCK_PROCESS_CPUTIME_ID);
+    double wall = clock_wall_ms(), cpu = clock_cpu_ms();
     c->width = c->gb->width, c->height = c->gb->height;
     bool ok =
         upload_all(c, e) &&
@@ -89,7 +82,7 @@ bool pass_begin(pass_context *c, error *e)
     c->frame_uniforms = gpu_uniforms_make(sizeof block);
     gpu_uniforms_set(c->frame_uniforms, FRAME_BINDING, &block, sizeof block);
     c->params_uniforms = gpu_uniforms_make(PARAMS_LARGEST);
-    c->timings[c->timing_count++] = (pass_timing){"upload", now(CLOCK_MONOTONIC) - wall, now(CLOCK_PROCESS_CPUTIME_ID) - cpu, 0};
+    c->timings[c->timing_count++] = (pass_timing){"upload", clock_wall_ms() - wall, clock_cpu_ms() - cpu, 0};
     return true;
 }
 
@@ -161,14 +154,14 @@ bool pass_make(pass_context *c, gpu_image *image, GLenum format, float value, er
 
 pass_timing pass_clock(const pass_context *c, const char *name)
 {
-    return (pass_timing){name, now(CLOCK_MONOTONIC), now(CLOCK_PROCESS_CPUTIME_ID), c->tiles.occupied_count};
+    return (pass_timing){name, clock_wall_ms(), clock_cpu_ms(), c->tiles.occupied_count};
 }
 
 void pass_clock_stop(pass_context *c, pass_timing since)
 {
     if (c->timing_count == PASS_MAX_TIMINGS) return;
-    c->timings[c->timing_count++] = (pass_timing){since.name, now(CLOCK_MONOTONIC) - since.wall_ms,
-                                                  now(CLOCK_PROCESS_CPUTIME_ID) - since.cpu_ms, since.tiles};
+    c->timings[c->timing_count++] =
+        (pass_timing){since.name, clock_wall_ms() - since.wall_ms, clock_cpu_ms() - since.cpu_ms, since.tiles};
 }
 
 // ---- running a shader

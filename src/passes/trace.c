@@ -3,9 +3,10 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
+#include "base/sort.h"
 #include "gbuffer/mesh.h"
 
 _Static_assert(GRID_COUNT == GRID_LEVELS && HIT_NOTHING == TRACE_MISS && HIT_NO_RAY == TRACE_NO_RAY,
@@ -16,12 +17,6 @@ static const double WANTED_MS = 15.0; // of a dispatch: far below what any watch
 
 // ---- opening
 
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // The median of a few thousand vertices.
 static vec3 middle_of(const obj_mesh *m)
 {
@@ -30,7 +25,7 @@ static vec3 middle_of(const obj_mesh *m)
     size_t stride = m->vertex_count / MOST + 1, n = 0;
     for (size_t i = 0; i < m->vertex_count && n < MOST; i += stride, n++)
         v[0][n] = m->vertices[i].x, v[1][n] = m->vertices[i].y, v[2][n] = m->vertices[i].z;
-    for (int k = 0; k < 3; k++) qsort(v[k], n, sizeof **v, by_value);
+    for (int k = 0; k < 3; k++) sort_doubles(v[k], n);
     return v3(v[0][n / 2], v[1][n / 2], v[2][n / 2]);
 }
 
@@ -145,13 +140,6 @@ static bool send_to_embree(trace_scene *s, gpu *g, const gpu_buffer *rays, gpu_b
     return true;
 }
 
-static double milliseconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
-
 // At most twice as many rays at a time: the next ones may be longer.
 static size_t next_chunk(size_t n, double took)
 {
@@ -162,7 +150,7 @@ static size_t next_chunk(size_t n, double took)
 static bool send_to_grid(trace_scene *s, pass_context *c, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e)
 {
     for (size_t first = 0, n; first < count; first += n) {
-        double start = milliseconds();
+        double start = clock_wall_ms();
         n = count - first < s->chunk ? count - first : s->chunk;
         const pass_call call = {
             .program = "trace_grid",
@@ -175,7 +163,7 @@ static bool send_to_grid(trace_scene *s, pass_context *c, const gpu_buffer *rays
         };
         if (!pass_run(c, &call, e)) return false;
         glFinish();
-        double took = milliseconds() - start;
+        double took = clock_wall_ms() - start;
         if (n == s->chunk || took > WANTED_MS) s->chunk = next_chunk(n, took);
     }
     return true;

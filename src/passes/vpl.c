@@ -35,8 +35,6 @@ static void sent_from(const float *light, const float *albedo, size_t i, double 
     }
 }
 
-static double luminance(const double c[3]) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
-
 // Every second bit of a Morton code.
 static unsigned even_bits(unsigned long code)
 {
@@ -70,7 +68,7 @@ static bool next(walk *w, size_t *pixel, double *weight)
         double sent[3];
         sent_from(w->light, w->albedo, i, sent);
         *pixel = i;
-        *weight = luminance(sent) * pixel_area(w->gb, i) * nearness(w->gb, i);
+        *weight = luminance(sent[0], sent[1], sent[2]) * pixel_area(w->gb, i) * nearness(w->gb, i);
         return true;
     }
     return false;
@@ -88,7 +86,7 @@ int vpl_choose(const gbuffer *gb, const float *light, const float *albedo, int c
         for (; chosen < count && sum > total * (chosen + 0.5) / count; chosen++) {
             vpl *v = &out[chosen];
             sent_from(light, albedo, i, v->radiance);
-            v->area = total / count / luminance(v->radiance) / nearness(gb, i);
+            v->area = total / count / luminance(v->radiance[0], v->radiance[1], v->radiance[2]) / nearness(gb, i);
             v->position = gbuffer_position(gb, (int)(i % (size_t)gb->width), (int)(i / (size_t)gb->width));
             v->normal = v3((double)gb->normal[4 * i], (double)gb->normal[4 * i + 1], (double)gb->normal[4 * i + 2]);
         }

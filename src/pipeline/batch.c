@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "cli/frames.h"
 #include "exr/write.h"
@@ -17,7 +17,6 @@
 #include "pipeline/resume.h"
 #include "pipeline/sequence_report.h"
 #include "pipeline/settings.h"
-#include "pipeline/stopwatch.h"
 
 enum { PATH = 4096, NEIGHBOURS = 256 };
 
@@ -34,7 +33,7 @@ typedef struct slot {
     char output[PATH];
     frame_result result;
     error error;
-    struct timespec started;
+    double started; // wall time in ms
 } slot;
 
 typedef struct batch {
@@ -118,7 +117,7 @@ static void read_slot(batch *b, slot *s, int frame)
     s->steps = 0;
     s->error = (error){0};
     s->result = (frame_result){0};
-    clock_gettime(CLOCK_MONOTONIC, &s->started);
+    s->started = clock_wall_ms();
     if (!inputs_of_frame(o, frame, &s->inputs) || !pattern_path(o->output, frame, s->output, sizeof s->output)) {
         err_set(&s->error, ERR_USAGE, NULL, NULL, "the path of frame %d is too long", frame);
         return;
@@ -158,12 +157,7 @@ static void *reader(void *arg)
     return NULL;
 }
 
-static double seconds_since(const struct timespec *started)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)(t.tv_sec - started->tv_sec) + 1e-9 * (double)(t.tv_nsec - started->tv_nsec);
-}
+static double seconds_since(double started) { return 1e-3 * (clock_wall_ms() - started); }
 
 static void note_failure(batch *b, const slot *s)
 {
@@ -172,7 +166,7 @@ static void note_failure(batch *b, const slot *s)
     log_error(b->j->log, "frame %d: %s", s->frame, text);
     b->failures.frames[b->failures.count++] = s->frame;
     sequence_report_add(
-        &b->report, &(sequence_frame){s->frame, s->inputs.list[0], s->output, NULL, &s->error, NULL, seconds_since(&s->started)});
+        &b->report, &(sequence_frame){s->frame, s->inputs.list[0], s->output, NULL, &s->error, NULL, seconds_since(s->started)});
     pthread_mutex_lock(&b->lock);
     b->failed++;
     if (!b->j->o->keep_going) b->give_up = true;
@@ -181,7 +175,7 @@ static void note_failure(batch *b, const slot *s)
 
 static void summary(batch *b, const slot *s, int index)
 {
-    double seconds = seconds_since(&s->started);
+    double seconds = seconds_since(s->started);
     sequence_report_add(&b->report, &(sequence_frame){s->frame, s->inputs.list[0], s->output, s->why, NULL, &s->result, seconds});
     if (s->skipped)
         progress_line(&b->progress, "frame %d (%d of %d): skipped, %s", s->frame, index + 1, b->frames.count, s->why);

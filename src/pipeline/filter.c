@@ -1,10 +1,10 @@
 #include "pipeline/filter.h"
+#include "base/clock.h"
 
 #include <string.h>
 
 #include "gbuffer/half.h"
 #include "pipeline/read_back.h"
-#include "pipeline/stopwatch.h"
 
 // The times of the small frame's passes belong to the frame.
 static void take_times(pass_context *c, const pass_context *small)

@@ -7,6 +7,7 @@
 
 #include "base/half.h"
 #include "base/mem.h"
+#include "base/sort.h"
 #include "light/primaries.h"
 #include "pipeline/canvas.h"
 #include "plugin/colour.h"
@@ -36,12 +37,6 @@ static uint8_t encode(float linear)
     return (uint8_t)lrintf(255.0f * v);
 }
 
-static int by_value(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 static bool is_light(layer_id l)
 {
     return layer_table[l]->display == DISPLAY_LIGHT || layer_table[l]->display == DISPLAY_PICTURE;
@@ -57,7 +52,7 @@ static float exposure(const frame_result *r, layer_id l)
     for (size_t i = 0; i < pixels && n < EXPOSURE_SAMPLES; i++)
         if (r->gb.depth[i] > 0.0f && seen++ % stride == 0) values[n++] = fmaxf(v[3 * i], fmaxf(v[3 * i + 1], v[3 * i + 2]));
     if (n == 0) return 1.0f;
-    qsort(values, n, sizeof *values, by_value);
+    sort_floats(values, n);
     float top = values[n * 95 / 100];
     return top > 0.0f ? 0.8f / top : 1.0f;
 }
@@ -67,8 +62,7 @@ static float alpha_at(const frame_result *r, size_t i)
 {
     channel_ref ref = r->resolution.channels[ROLE_ALPHA][0];
     const exrio_channel *c = &r->file->parts[ref.part].channels[ref.channel];
-    if (c->type == SAMPLE_HALF) return half_to_float(((const uint16_t *)c->data)[i]);
-    return c->type == SAMPLE_FLOAT ? ((const float *)c->data)[i] : 1.0f;
+    return c->type == SAMPLE_UINT ? 1.0f : sample_value(c->type, c->data, i);
 }
 
 static bool has_surface(const gbuffer *gb, size_t i) { return gb->depth[i] > 0.0f || (gb->coverage && gb->coverage[i] > 0.0f); }

@@ -2,8 +2,8 @@
 #ifndef SSDO_PIPELINE_READ_H
 #define SSDO_PIPELINE_READ_H
 
+#include "base/clock.h"
 #include "pipeline/frame.h"
-#include "pipeline/stopwatch.h"
 
 // frame_read_files; where the job's device is not open yet, it is opened here, on the calling thread, while another thread reads
 // and prepares the frame.

@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "base/threads.h"
 #include "exr/write.h"
 #include "gpu/transfer.h"
-#include "pipeline/stopwatch.h"
 
 enum {
     PIECE = 1 << 15, // floats that one thread converts at a time: they stay in its cache

@@ -51,9 +51,7 @@ bool relight_want(const options *o, exrio_file *file, const char *view, error *e
 
 static float sample_at(const exrio_channel *c, size_t i)
 {
-    float v = c->type == SAMPLE_HALF    ? half_to_float(((const uint16_t *)c->data)[i])
-              : c->type == SAMPLE_FLOAT ? ((const float *)c->data)[i]
-                                        : (float)((const uint32_t *)c->data)[i];
+    float v = sample_value(c->type, c->data, i);
     return isfinite(v) ? v : 0.0f;
 }
 

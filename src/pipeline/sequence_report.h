@@ -2,9 +2,9 @@
 #ifndef SSDO_PIPELINE_SEQUENCE_REPORT_H
 #define SSDO_PIPELINE_SEQUENCE_REPORT_H
 
+#include "base/clock.h"
 #include "cli/frames.h"
 #include "pipeline/frame.h"
-#include "pipeline/stopwatch.h"
 
 // Who works on a sequence, each on a frame of its own.
 typedef enum sequence_thread { SEQUENCE_READER, SEQUENCE_GPU, SEQUENCE_WRITER, SEQUENCE_THREADS } sequence_thread;

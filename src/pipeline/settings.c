@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "gbuffer/conventions.h"
 #include "passes/method.h"
 #include "passes/openings.h"
@@ -20,12 +21,6 @@ static double radius_of(const job *j, const gbuffer *gb)
     return gb->camera.kind == CAMERA_ORTHOGRAPHIC ? o->radius / per_unit : o->radius * frame_median_depth(gb) / per_unit;
 }
 
-static int by_value(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 // Of at most a few thousand evenly spaced surfaces: enough for a scale. `share` of them are nearer.
 static double depth_at(const gbuffer *gb, double share)
 {
@@ -36,7 +31,7 @@ static double depth_at(const gbuffer *gb, double share)
     for (size_t i = 0; i < count && n < MOST; i++)
         if (gb->depth[i] > 0.0f && seen++ % stride == 0) depths[n++] = gb->depth[i];
     if (n == 0) return 1.0;
-    qsort(depths, (size_t)n, sizeof *depths, by_value);
+    sort_floats(depths, (size_t)n);
     return (double)depths[(int)(share * n)];
 }
 

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <time.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "bench.h"
 
@@ -49,12 +50,7 @@ static bool parse(int argc, char **argv, arguments *a)
     return optind == argc && a->rounds >= 1 && a->rounds <= BENCH_ROUNDS;
 }
 
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
+static double seconds(void) { return 1e-3 * clock_wall_ms(); }
 
 static void say(double start, const char *what)
 {

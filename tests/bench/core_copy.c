@@ -3,9 +3,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include <openexr.h>
+
+#include "base/clock.h"
 
 #define MUST(call)                                                                                                               \
     do {                                                                                                                         \
@@ -29,13 +30,6 @@ static void place(exr_coding_channel_info_t *c, plane *p, int line, int width)
     c->decode_to_ptr = p->bytes + (size_t)line * (size_t)width * (size_t)p->each;
 }
 
-static double cpu_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
-
 int main(int argc, char **argv)
 {
     exr_context_t in, out;
@@ -45,7 +39,7 @@ int main(int argc, char **argv)
     int32_t lines;
     int part;
     if (argc != 3) return 2;
-    double begun = cpu_ms();
+    double begun = clock_cpu_ms();
     MUST(exr_start_read(&in, argv[1], &init));
     MUST(exr_get_data_window(in, 0, &window));
     MUST(exr_get_channels(in, 0, &list));
@@ -66,7 +60,7 @@ int main(int argc, char **argv)
         MUST(exr_decoding_run(in, 0, &p));
         MUST(exr_decoding_destroy(in, &p));
     }
-    double was_read = cpu_ms();
+    double was_read = clock_cpu_ms();
     MUST(exr_start_write(&out, argv[2], EXR_WRITE_FILE_DIRECTLY, &init));
     MUST(exr_add_part(out, "copy", EXR_STORAGE_SCANLINE, &part));
     MUST(exr_copy_unset_attributes(out, 0, in, 0));
@@ -83,6 +77,6 @@ int main(int argc, char **argv)
     }
     exr_finish(&in);
     MUST(exr_finish(&out));
-    printf("%.1f %.1f\n", was_read - begun, cpu_ms() - was_read);
+    printf("%.1f %.1f\n", was_read - begun, clock_cpu_ms() - was_read);
     return 0;
 }

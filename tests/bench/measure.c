@@ -6,8 +6,10 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
+
+#include "base/clock.h"
+#include "base/sort.h"
 
 enum { MOST = 32, MOST_ROUNDS = 99 };
 
@@ -20,26 +22,19 @@ static double seconds(struct timeval t) { return (double)t.tv_sec + 1e-6 * (doub
 
 static int run(const char *command, double *cpu, double *wall, long *peak)
 {
-    struct timespec a, b;
     struct rusage u;
     int status;
-    clock_gettime(CLOCK_MONOTONIC, &a);
+    double begun = clock_wall_ms();
     pid_t pid = fork();
     if (pid == 0) {
         execl("/bin/sh", "sh", "-c", command, (char *)NULL);
         _exit(127);
     }
     if (pid < 0 || wait4(pid, &status, 0, &u) != pid) return -1;
-    clock_gettime(CLOCK_MONOTONIC, &b);
-    *wall = 1e3 * (double)(b.tv_sec - a.tv_sec) + 1e-6 * (double)(b.tv_nsec - a.tv_nsec);
+    *wall = clock_wall_ms() - begun;
     *cpu = 1e3 * (seconds(u.ru_utime) + seconds(u.ru_stime));
     if (u.ru_maxrss > *peak) *peak = u.ru_maxrss;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-static int by_value(const void *a, const void *b)
-{
-    return (*(const double *)a > *(const double *)b) - (*(const double *)a < *(const double *)b);
 }
 
 int main(int argc, char **argv)
@@ -54,8 +49,8 @@ int main(int argc, char **argv)
                 return 1;
             }
     for (int i = 0; i < count; i++) {
-        qsort(all[i].cpu, (size_t)rounds, sizeof(double), by_value);
-        qsort(all[i].wall, (size_t)rounds, sizeof(double), by_value);
+        sort_doubles(all[i].cpu, (size_t)rounds);
+        sort_doubles(all[i].wall, (size_t)rounds);
         double cpu = all[i].cpu[rounds / 2];
         printf("%s\t%.0f\t%.0f\t%.0f\t%ld\n", argv[2 + 2 * i], cpu, all[i].wall[rounds / 2],
                cpu > 0 ? 100.0 * (all[i].cpu[rounds - 1] - all[i].cpu[0]) / cpu : 0.0, all[i].peak / 1024);

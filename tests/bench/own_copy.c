@@ -2,30 +2,23 @@
 // milliseconds of reading and of writing, beside core_copy's.
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "exr/write.h"
-
-static double cpu_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
 
 static bool copy(const char *from, const char *to, double ms[2], error *e)
 {
     exrio_file *f = NULL;
     exrio_out_channel *channels = NULL;
     bool ok = false;
-    double begun = cpu_ms();
+    double begun = clock_cpu_ms();
     if (!exrio_file_open(from, &f, e)) return false;
     exrio_part *p = &f->parts[0];
     for (int c = 0; c < p->channel_count; c++) p->channels[c].wanted = true;
     channels = mem_zero((size_t)p->channel_count, sizeof *channels, e);
     if (!channels || !exrio_file_load(f, 2, e)) goto out;
-    ms[0] = cpu_ms() - begun;
+    ms[0] = clock_cpu_ms() - begun;
     for (int c = 0; c < p->channel_count; c++)
         channels[c] = (exrio_out_channel){p->channels[c].name, p->channels[c].type, p->channels[c].data};
     exrio_out_part part = {.data_window = p->data_window,
@@ -35,9 +28,9 @@ static bool copy(const char *from, const char *to, double ms[2], error *e)
                            .channels = channels,
                            .channel_count = p->channel_count,
                            .attributes_from = f};
-    begun = cpu_ms();
+    begun = clock_cpu_ms();
     ok = exrio_write(to, &part, 1, 2, e);
-    ms[1] = cpu_ms() - begun;
+    ms[1] = clock_cpu_ms() - begun;
 out:
     free(channels);
     exrio_file_close(f);

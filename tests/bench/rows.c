@@ -11,13 +11,13 @@ enum { BUDGETS = sizeof budgets / sizeof *budgets, CONVERGED = 1024 };
 
 // Rows besides a method's own: the same shader under another setting, at every second budget and at the method's defaults; with
 // `defaults` only there. `converged`: at 1024 samples as well. What is 0 in `set` is as the method has it.
-typedef struct variant {
+typedef struct bench_variant {
     const char *method, *suffix;
     bool defaults, converged;
     bench_row set;
-} variant;
+} bench_variant;
 
-static const variant variants[] = {
+static const bench_variant variants[] = {
     {"ssdo", ", no thickness", .set = {.thickness = INFINITY}},
     {"arc", ", no planes", .converged = true, .set = {.no_planes = true}},
     {"arc", ", with bent", .defaults = true, .set = {.extra = 1u << LAYER_BENT}},
@@ -48,7 +48,7 @@ static bench_row row_of(const method *m, const char *suffix, int samples, int bl
     return r;
 }
 
-static bench_row variant_row(const method *m, const variant *v, int samples, int blur)
+static bench_row budget_row(const method *m, const bench_variant *v, int samples, int blur)
 {
     bench_row r = v->set, plain = row_of(m, v->suffix, samples, blur);
     r.kind = plain.kind, r.m = m, r.samples = samples, r.blur = blur;
@@ -60,12 +60,12 @@ static bench_row variant_row(const method *m, const variant *v, int samples, int
     return r;
 }
 
-static int variant_rows(const method *m, const variant *v, bench_row *rows)
+static int variant_rows(const method *m, const bench_variant *v, bench_row *rows)
 {
     int n = 0;
-    for (int i = 1; !v->defaults && i < BUDGETS; i += 2) rows[n++] = variant_row(m, v, budgets[i], 0);
-    if (v->converged) rows[n++] = variant_row(m, v, CONVERGED, 0);
-    rows[n++] = variant_row(m, v, m->samples, m->blur);
+    for (int i = 1; !v->defaults && i < BUDGETS; i += 2) rows[n++] = budget_row(m, v, budgets[i], 0);
+    if (v->converged) rows[n++] = budget_row(m, v, CONVERGED, 0);
+    rows[n++] = budget_row(m, v, m->samples, m->blur);
     return n;
 }
 

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "sample.h"
 
 enum { LIGHTS = 2 };
@@ -26,13 +27,7 @@ typedef struct scene_score {
     light_score light[LIGHTS];
 } scene_score;
 
-static int ascending(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double luminance(const float *c) { return 0.2126 * (double)c[0] + 0.7152 * (double)c[1] + 0.0722 * (double)c[2]; }
+static double luminance_of(const float *c) { return luminance((double)c[0], (double)c[1], (double)c[2]); }
 
 // Of |x - t| / t in luminance, t the mean of the two renders.
 static double median_error(const sample *s, const float *x, const float *a, const float *b)
@@ -40,11 +35,11 @@ static double median_error(const sample *s, const float *x, const float *a, cons
     size_t n = (size_t)s->width * (size_t)s->height, kept = 0;
     double *errors = malloc(n * sizeof *errors), median = NAN;
     for (size_t i = 0; errors && i < n; i++) {
-        double t = 0.5 * (luminance(a + 3 * i) + luminance(b + 3 * i));
-        if (sample_is_surface(s, (int)i) && t > 0.0) errors[kept++] = fabs(luminance(x + 3 * i) - t) / t;
+        double t = 0.5 * (luminance_of(a + 3 * i) + luminance_of(b + 3 * i));
+        if (sample_is_surface(s, (int)i) && t > 0.0) errors[kept++] = fabs(luminance_of(x + 3 * i) - t) / t;
     }
     if (kept > 0) {
-        qsort(errors, kept, sizeof *errors, ascending);
+        sort_doubles(errors, kept);
         median = errors[kept / 2];
     }
     free(errors);
@@ -143,7 +138,8 @@ static bool score_all(sample *scenes, int n, const char *out, char **names, int 
         "| ratio | median |\n| --- |%s\n",
         " ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for (int i = 0; i < n; i++) {
-        snprintf(path, sizeof path, "%s/%s.exr", out, scenes[i].name);
+        if (snprintf(path, sizeof path, "%s/%s.exr", out, scenes[i].name) >= (int)sizeof path)
+            return err_set(e, ERR_USAGE, out, NULL, "the folder's name is too long");
         FILE *f = is_named(scenes[i].name, names, name_count) ? fopen(path, "rb") : NULL;
         if (!f) continue;
         fclose(f);

@@ -1,19 +1,14 @@
 #include <stdlib.h>
 
+#include "base/sort.h"
 #include "bench.h"
-
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 double bench_percentile(const double *values, int count, double share)
 {
     double v[BENCH_SCENES * BENCH_ROUNDS];
     if (count == 0) return NAN;
     for (int i = 0; i < count; i++) v[i] = values[i];
-    qsort(v, (size_t)count, sizeof *v, by_value);
+    sort_doubles(v, (size_t)count);
     double at = share * (count - 1);
     int low = (int)at, high = low + 1 < count ? low + 1 : low;
     return v[low] + (at - low) * (v[high] - v[low]);
@@ -28,7 +23,7 @@ bench_time bench_cell_time(const bench_results *r, int row, int which, bool all)
     const bench_cell *c = &r->cells[row * r->scene_count + which];
     const bench_time *t = all ? c->all : c->direct;
     double cpu[BENCH_ROUNDS], wall[BENCH_ROUNDS];
-    int n = all ? c->all_rounds : c->adaptive;
+    int n = all ? c->all_rounds : c->rounds;
     for (int i = 0; i < n; i++) cpu[i] = t[i].cpu, wall[i] = t[i].wall;
     if (n == 0 || which >= r->timed_count || (all && !c->has_radiance)) return (bench_time){NAN, NAN};
     return (bench_time){bench_median(cpu, n), bench_median(wall, n)};
@@ -39,7 +34,7 @@ double bench_cell_yards(const bench_results *r, int row, int which, bool all)
     const bench_cell *c = &r->cells[row * r->scene_count + which];
     const bench_time *t = all ? c->all : c->direct;
     double ratio[BENCH_ROUNDS];
-    int n = all ? c->all_rounds : c->adaptive;
+    int n = all ? c->all_rounds : c->rounds;
     for (int i = 0; i < n && which < r->timed_count; i++) ratio[i] = t[i].cpu / r->yard[which][c->round[i]].cpu;
     return n == 0 || which >= r->timed_count || (all && !c->has_radiance) ? NAN : bench_median(ratio, n);
 }

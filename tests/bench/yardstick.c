@@ -1,16 +1,9 @@
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "bench.h"
-
-static double now(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
 
 static GLuint compile(GLenum kind, const char *path, error *e)
 {
@@ -83,7 +76,7 @@ bool yardstick_open(yardstick *y, int width, int height, error *e)
 bench_time yardstick_run(const yardstick *y)
 {
     glFinish();
-    double cpu = now(CLOCK_PROCESS_CPUTIME_ID), wall = now(CLOCK_MONOTONIC);
+    double cpu = clock_cpu_ms(), wall = clock_wall_ms();
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, y->framebuffer);
     glViewport(0, 0, y->width, y->height);
     glUseProgram(y->program);
@@ -91,7 +84,7 @@ bench_time yardstick_run(const yardstick *y)
     glBindVertexArray(y->vertices);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glFinish();
-    bench_time t = {now(CLOCK_PROCESS_CPUTIME_ID) - cpu, now(CLOCK_MONOTONIC) - wall};
+    bench_time t = {clock_cpu_ms() - cpu, clock_wall_ms() - wall};
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     return t;
 }

@@ -1,13 +1,8 @@
 // libFuzzer target: frame ranges and file patterns. The input is a range up to the first newline, then a pattern.
 
+#include "base/sort.h"
 #include "cli/frames.h"
 #include "fuzz.h"
-
-static int by_value(const void *a, const void *b)
-{
-    int x = *(const int *)a, y = *(const int *)b;
-    return (x > y) - (x < y);
-}
 
 static void check_range(const char *text)
 {
@@ -18,7 +13,7 @@ static void check_range(const char *text)
         return;
     }
     CHECK(list.count > 0 && list.count <= FRAMES_MAX);
-    qsort(list.frames, (size_t)list.count, sizeof *list.frames, by_value);
+    sort_ints(list.frames, (size_t)list.count);
     for (int i = 1; i < list.count; i++) CHECK(list.frames[i] != list.frames[i - 1]); // every frame once
     frames_free(&list);
 }

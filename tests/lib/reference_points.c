@@ -11,7 +11,7 @@ static void tangent_frame(vec3 n, vec3 *a, vec3 *b)
 
 static double fraction(double a) { return a - floor(a); }
 
-static double luminance(vec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
+static double luminance_of(vec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 // What one hemisphere's quadrature adds up.
 typedef struct sums {
@@ -85,7 +85,7 @@ static void add_direction(const receiver *r, vec3 w, double cosine, double block
 {
     const reference_ssdo_options *o = r->options;
     vec3 sky = (o->sky ? o->sky : truth_white_sky)(o->sky_data, to_world(&r->layer->camera, w));
-    double open = 1.0 - blocked, light = luminance(sky) * cosine;
+    double open = 1.0 - blocked, light = luminance_of(sky) * cosine;
     sum->weight += cosine;
     sum->open += cosine * open;
     sum->light += light;

@@ -8,6 +8,7 @@
 
 #include "base/half.h"
 #include "base/mem.h"
+#include "base/sort.h"
 #include "exr/file.h"
 
 static double number(json_object *o, const char *key)
@@ -179,12 +180,6 @@ void sample_free(sample *s)
     s->scored = NULL;
 }
 
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 score sample_score(const sample *s, const float *x, const float *a, const float *b, int channels)
 {
     double n = 0, se = 0, bias = 0, sx = 0, sa = 0, sb = 0, sab = 0, sxx = 0, sxt = 0;
@@ -202,7 +197,7 @@ score sample_score(const sample *s, const float *x, const float *a, const float 
         }
     score r = {0};
     if (!errors || n == 0) return r;
-    qsort(errors, kept, sizeof *errors, by_value);
+    sort_doubles(errors, kept);
     double mean = 0.5 * (sa + sb) / n, variance_x = sxx / n - sx / n * sx / n, variance_t = sab / n - sa / n * sb / n;
     r.rmse = sqrt(fmax(0.0, se / n));
     r.bias = bias / n;

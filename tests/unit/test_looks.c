@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "base/sort.h"
 #include "must.h"
 #include "rig.h"
 #include "scene_picture.h"
@@ -63,12 +64,6 @@ static float *mask_of(rig *r, gbuffer *gb)
     return mask;
 }
 
-static int by_value(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 // The definition, in double, as one two-dimensional sum.
 static double expected_mask(const gbuffer *gb, int x, int y, double near, double far)
 {
@@ -100,7 +95,7 @@ static void depthmask_is_the_unsharp_mask(void **state)
         if (gb.depth[i] > 0.0f) sorted[n++] = gb.depth[i];
     size_t stride = n / 4096 + 1, kept = 0; // as many as the pass looks at
     for (size_t i = 0; i < n && kept < 4096; i += stride) sorted[kept++] = sorted[i];
-    qsort(sorted, kept, sizeof *sorted, by_value);
+    sort_floats(sorted, kept);
     double near = (double)sorted[kept * 2 / 100], far = (double)sorted[kept * 98 / 100];
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
@@ -157,7 +152,7 @@ static void depthmask_of_a_tilted_plane(void **state)
         must(scene_gbuffer(&s, &v, &gb, &e), &e);
         float *mask = mask_of(*state, &gb), *sorted = malloc(sizeof(float) * PIXELS), least = 0.0f, border = 0.0f;
         memcpy(sorted, gb.depth, sizeof(float) * PIXELS);
-        qsort(sorted, PIXELS, sizeof *sorted, by_value);
+        sort_floats(sorted, PIXELS);
         float far = sorted[PIXELS * 97 / 100];
         int reach = (int)ceil(0.03 * hypot(WIDTH, HEIGHT)), n = 0;
         for (int i = 0; i < PIXELS; i++) {

@@ -72,7 +72,7 @@ static void areas_add_up(void **state)
     }
 }
 
-static double luminance(const vpl *v) { return 0.2126 * v->radiance[0] + 0.7152 * v->radiance[1] + 0.0722 * v->radiance[2]; }
+static double luminance_of(const vpl *v) { return 0.2126 * v->radiance[0] + 0.7152 * v->radiance[1] + 0.0722 * v->radiance[2]; }
 
 static void lights_follow_what_is_sent(void **state)
 {
@@ -91,9 +91,9 @@ static void lights_follow_what_is_sent(void **state)
     assert_int_equal(vpl_choose(&gb, light, albedo, 400, lights), 400);
     assert_int_equal(vpl_choose(&gb, light, albedo, 400, again), 400);
     assert_memory_equal(lights, again, sizeof lights);
-    double power = luminance(&lights[0]) * lights[0].area;
+    double power = luminance_of(&lights[0]) * lights[0].area;
     for (int k = 0; k < 400; k++) {
-        double x, y, lum = luminance(&lights[k]);
+        double x, y, lum = luminance_of(&lights[k]);
         assert_true(camera_project(&gb.camera, lights[k].position, &x, &y));
         assert_true(y >= HEIGHT / 2); // the upper half is black
         double L = x < WIDTH / 2 ? 1.0 : 3.0;

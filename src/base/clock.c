@@ -1,4 +1,4 @@
-#include "pipeline/stopwatch.h"
+#include "base/clock.h"
 
 #include <time.h>
 
@@ -9,7 +9,10 @@ static double milliseconds(clockid_t clock)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-stopwatch stopwatch_start(void) { return (stopwatch){milliseconds(CLOCK_MONOTONIC), milliseconds(CLOCK_PROCESS_CPUTIME_ID)}; }
+double clock_wall_ms(void) { return milliseconds(CLOCK_MONOTONIC); }
+double clock_cpu_ms(void) { return milliseconds(CLOCK_PROCESS_CPUTIME_ID); }
+
+stopwatch stopwatch_start(void) { return (stopwatch){clock_wall_ms(), clock_cpu_ms()}; }
 
 void stopwatch_add(stopwatch *since, double *wall, double *cpu)
 {

@@ -1,6 +1,9 @@
-// Wall time and the CPU time of the whole process, in milliseconds.
-#ifndef SSDO_PIPELINE_STOPWATCH_H
-#define SSDO_PIPELINE_STOPWATCH_H
+// Times in milliseconds: wall time from some moment on, and the CPU time of the whole process.
+#ifndef SSDO_BASE_CLOCK_H
+#define SSDO_BASE_CLOCK_H
+
+double clock_wall_ms(void);
+double clock_cpu_ms(void);
 
 typedef struct stopwatch {
     double wall, cpu;
