@@ -26,17 +26,20 @@ static bool warned(const char *a, const char *b)
 }
 
 // The still life in plain names, P, N and Z float, FINE times as fine as W x H.
-static exrio_file *render(int scale)
+static exrio_file *render_as(int scale, scene_exr_options options)
 {
     scene s = {0};
     error e = {0};
     scene_clutter(&s);
     view v = view_perspective(W * scale, H * scale, 45.0, 1.0);
     view_scene(&v, &s);
-    exrio_file *f = scene_file(&s, &v, &(scene_exr_options){.convention = "plain"}, &e);
+    options.convention = "plain";
+    exrio_file *f = scene_file(&s, &v, &options, &e);
     must(f != NULL, &e);
     return f;
 }
+
+static exrio_file *render(int scale) { return render_as(scale, (scene_exr_options){0}); }
 
 static float *data_of(const exrio_file *f, const char *name)
 {
@@ -124,7 +127,7 @@ static void mended_pixels_have_normals(void **state)
     scene_file_free(fine);
 }
 
-// What level 45 does to a Y (facts: an error of about 0.01), and to nothing else of X Y Z.
+// What level 45 does to a Y (an error of about 0.01), and to nothing else of X Y Z.
 static void dwa_is_named_with_its_channel_and_share(void **state)
 {
     (void)state;
@@ -145,6 +148,31 @@ static void dwa_is_named_with_its_channel_and_share(void **state)
     scene_file_free(f);
 }
 
+// B44 takes halves alone, whatever they hold; PXR24 takes floats, and is worth a word only where the pixels show it.
+static void b44_and_pxr24_are_named_for_what_they_take(void **state)
+{
+    (void)state;
+    exrio_file *f = render_as(1, (scene_exr_options){.half_position = true});
+    const int b44[] = {EXR_COMPRESSION_B44, EXR_COMPRESSION_B44A};
+    for (int i = 0; i < 2; i++) {
+        f->parts[0].compression = b44[i];
+        listen(f);
+        assert_true(warned("P.X, P.Y, P.Z: B44", "half floats of the position pass"));
+        assert_false(warned("B44", "normal") || warned("B44", "depth"));
+    }
+    scene_file_free(f);
+    f = render(1);
+    f->parts[0].compression = EXR_COMPRESSION_PXR24;
+    listen(f);
+    assert_int_equal(heard.warning_count, 0);
+    float *y = data_of(f, "N.Y");
+    for (int i = 0; i < W * H; i++) y[i] += 0.01f * (float)sin(0.7 * i);
+    listen(f);
+    assert_true(warned("N.X, N.Y, N.Z: PXR24", "floats of the normal pass to 24 bits"));
+    assert_false(warned("PXR24", "position") || warned("PXR24", "depth"));
+    scene_file_free(f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -152,6 +180,7 @@ int main(void)
         cmocka_unit_test(filtered_passes_are_named),
         cmocka_unit_test(mended_pixels_have_normals),
         cmocka_unit_test(dwa_is_named_with_its_channel_and_share),
+        cmocka_unit_test(b44_and_pxr24_are_named_for_what_they_take),
     };
     log_init(&heard, LOG_QUIET);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
