@@ -13,12 +13,14 @@ env_rotate_deg turns the environment about +Z, from +X towards +Y.
 """
 import argparse
 import json
+import math
 import os
 import shutil
 import sys
 import tempfile
 
 import bpy
+from mathutils import Vector
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -63,6 +65,23 @@ def record(out, name, entry):
         f.write("\n")
 
 
+def around(layer, path, ahead):
+    """A lat-long (360 degree) G-buffer, upright, 512x256: what --also reads. From where the camera stands, or `ahead` of it: this
+    share of the way to what the middle of the picture shows."""
+    scene, thing = bpy.context.scene, bpy.context.scene.camera
+    place, data = thing.matrix_world.translation.copy(), bpy.data.cameras.new("around")
+    along = thing.matrix_world.to_quaternion() @ Vector((0.0, 0.0, -1.0))
+    met, end, *_ = scene.ray_cast(bpy.context.view_layer.depsgraph, place, along)
+    data.type, data.cycles.panorama_type = "PANO", "EQUIRECTANGULAR"
+    scene.camera = bpy.data.objects.new("around", data)
+    scene.camera.rotation_euler, scene.camera.location = (math.pi / 2, 0.0, 0.0), place.lerp(end if met else place, ahead)
+    scene.collection.objects.link(scene.camera)
+    scene.render.resolution_x, scene.render.resolution_y = 512, 256
+    scene.cycles.samples = 8
+    passes(layer, {"z", "position", "normal"})
+    render(path)
+
+
 def make(name, args):
     builder, env, ao_distance, transparent = SCENES[name]
     hot = name == "hot"
@@ -83,6 +102,10 @@ def make(name, args):
     if args.export_proxies:
         export.export_proxies(layout, os.path.join(args.out, "proxies", name + ".json"))
     if args.export_obj or args.export_proxies:
+        return
+    if args.around:
+        around(layer, os.path.join(args.out, name + "_around.exr"), 0.0)
+        around(layer, os.path.join(args.out, name + "_ahead.exr"), 0.5)
         return
     main, truth = os.path.join(args.out, name + ".exr"), os.path.join(args.out, name + "_truth.exr")
     if not args.truth_only:
@@ -126,6 +149,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1, help="Cycles' sampling seed; the truth uses seed + 1000")
     parser.add_argument("--spp", type=int, default=0, help="samples per pixel; 0: the scene's own")
     parser.add_argument("--size", default=None, help="WIDTHxHEIGHT")
+    parser.add_argument("--around", action="store_true", help="render NAME_around.exr and NAME_ahead.exr, lat-long G-buffers from the camera and from ahead of it, and nothing else")
     parser.add_argument("--truth-only", action="store_true")
     parser.add_argument("--export-obj", action="store_true", help="write the scene's mesh, NAME.obj and NAME.mtl, and render nothing")
     parser.add_argument("--export-proxies", action="store_true",

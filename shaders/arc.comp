@@ -9,7 +9,7 @@
 //           between those, so that all slices together are evenly spaced
 //   BOUNCE: indirect = sum w (blocked share x light that the nearest blocker sends) / sum w. With EXITANT the sender image is a picture
 //           that the renderer lit. Without, it is light before albedo, and is multiplied by the sender's albedo here
-// OUTSIDE: not all directions that leave the frame are open (include/outside.glsl).
+// OUTSIDE: not all directions that leave the frame are open (include/outside.glsl); SURROUND: further G-buffers say which
 // HORIZON (gtao), BITMASK (bitmask) or RUNS (arc) says what blocks the sectors; PLANES adds planes to RUNS.
 #if !defined(LIGHT) && !defined(BOUNCE)
 #define LIMITED // to the radius; light comes from any distance
@@ -21,9 +21,7 @@
 #include "include/arc_slice.glsl"
 #include "include/arc_line.glsl"
 #include "include/arc_sectors.glsl"
-#ifdef OUTSIDE
 #include "include/outside.glsl"
-#endif
 
 #if defined(VISIBILITY) || !(defined(LIGHT) || defined(BOUNCE))
 #define SCALAR
@@ -158,6 +156,7 @@ void main() {
 #ifdef PLANES
         block_by_planes(slots, side, V, across, n, lines, P, noise.x, noise.y);
 #endif
+        Exits exits = exits_of(P, V, lines);
         open += weight * (1.0 - sector_share(slots.blocked));
         all += weight;
 #ifdef HALF_DIFFERENCE
@@ -166,12 +165,12 @@ void main() {
         first_all += first ? weight : 0.0;
 #endif
 #ifdef LIGHT
-        add_sky(light, side, V, across, n, weight, slots, noise.y);
+        add_sky(light, side, V, across, n, weight, slots, noise.y, exits);
 #endif
 #ifdef BOUNCE
         bounced += weight * slots.light;
 #ifdef OUTSIDE
-        bounced += weight * (sector_share(~slots.blocked) - open_share(~slots.blocked, slots.seen)) * outside_light;
+        bounced += weight * closed_share(side, V, across, n, slots, noise.y, exits) * outside_light;
 #endif
 #endif
 #ifdef BENT

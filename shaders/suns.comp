@@ -48,14 +48,18 @@ void main() {
         Side side = side_of(V, across, N, eye_distance, n, weight);
         float low = share_at(side, t - half_width), high = share_at(side, t + half_width);
         divide_into_sectors(low, high);
-        Line line = lines_of(V, across, origin, -1.0).right;
+        Lines lines = lines_of(V, across, origin, -1.0);
+        Line line = lines.right;
+#ifdef OUTSIDE
+        Exits exits = exits_of(P, V, lines);
+#endif
 #ifndef OUTSIDE // the opening that shows the sky may lie beyond the box
         line.reach = way_out(P, S, line);
 #endif
         Sectors slots = all_open();
         march(slots, side, line, P, N, noise, 0.5);
 #ifdef OUTSIDE
-        float open = open_share(~slots.blocked, slots.seen);
+        float open = open_share(~slots.blocked, slots.seen, openness(V, across, vec2(along, sine), exits));
 #else
         float open = 1.0 - sector_share(slots.blocked);
 #endif

@@ -1,16 +1,12 @@
 #version 450 core
 // Depth and normal in one texel, for passes that read many of them: the bits of the depth, then pack_normal. With PLANES the highest bit
-// of the second word is set where the surface lies on one of the frame's planes. With OUTSIDE the second word of a background pixel is
-// the depth of the opening that it is seen through (src/passes/openings.h).
+// of the second word is set where the surface lies on one of the frame's planes.
 #include "include/frame.glsl"
 #include "include/sampling.glsl"
 #include "include/arc_params.glsl"
 
 layout(rg32ui) writeonly uniform uimage2D surface_image;
 PICTURE(rgba32f, planes_image);
-#ifdef OUTSIDE
-PICTURE(r32f, rim_image);
-#endif
 
 void main() {
     ivec2 p = this_pixel();
@@ -25,9 +21,6 @@ void main() {
         float room = FETCH(planes_image, ivec2(PLANE_LIGHT, i)).w * (is_orthographic() ? 1.0 : depth);
         if (abs(dot(equation.xyz, P) - equation.w) <= room && dot(equation.xyz, N) >= 0.99) normal |= 1u << 31u;
     }
-#endif
-#ifdef OUTSIDE
-    if (depth == 0.0) normal = floatBitsToUint(FETCH(rim_image, p).r);
 #endif
     imageStore(surface_image, p, uvec4(floatBitsToUint(depth), normal, 0u, 0u));
 }

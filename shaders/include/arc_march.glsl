@@ -29,7 +29,7 @@ struct Run {
     float last_share, last_squared; // of the last sample: share, squared distance
     vec3 point, normal, light; // of the last sample
 #ifdef OUTSIDE
-    float rim_depth, rim_share; // of the opening that the last sample shows; depth 0: it shows none
+    float rim_depth, rim_share, seen_depth; // of the opening that the last sample shows (depth 0: none), and of what is seen through it
 #endif
 };
 
@@ -64,19 +64,23 @@ void finish(inout Sectors slots, Side s, Walk k, Run r, bool ends, bool now) {
 }
 
 #ifdef OUTSIDE
-// A background pixel shows that its view ray is empty. Behind the opening that it is seen through, directions that meet this ray are
-// outdoors there, so nothing unseen blocks them: an arc from the opening to the end of the ray. The further out a ray, the lower its
-// arc, and the directions between two rays of one opening are outdoors too. The opening ends halfway between a sample that shows it
-// and one that does not.
-void see(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at, float before, uvec2 stored_texel) {
-    float rim = stored_texel.x == 0u ? uintBitsToFloat(stored_texel.y) : 0.0;
+PICTURE(r32f, rim_image); // where the outdoors are seen, the depth of the opening (src/passes/openings.h); else 0
+
+// A pixel that shows the outdoors shows that its view ray is empty from the opening to the surface it sees, or to infinity. Directions
+// that meet this part of the ray are outdoors there, so nothing unseen blocks them: an arc. The further out a ray, the lower its arc, and
+// the directions between two rays of one opening are outdoors too. The opening ends halfway between a sample that shows it and one that
+// does not.
+void see(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, ivec2 q, float depth, float at, float before) {
+    float rim = FETCH_INSIDE(rim_image, q, vec4(0.0)).r;
     bool here = rim > 0.0, there = run.rim_depth > 0.0;
     vec2 screen = k.line.origin + (here && there ? at : 0.5 * (before + at)) * k.line.direction;
-    vec3 end = is_orthographic() ? vec3(0.0, 0.0, 1.0) : ray_at(screen);
-    float far = share(s, in_slice(s, end)), near = share(s, in_slice(s, position_at(screen, here ? rim : run.rim_depth) - P));
+    float last = here ? depth : run.seen_depth, opening = here ? rim : run.rim_depth;
+    vec3 infinity = is_orthographic() ? vec3(0.0, 0.0, 1.0) : ray_at(screen), end = last > 0.0 ? position_at(screen, last) - P : infinity;
+    float far = share(s, in_slice(s, end)), near = share(s, in_slice(s, position_at(screen, opening) - P));
     slots.seen |= here || there ? sectors(near, there ? max(far, run.rim_share) : far, k.jitter) : uvec2(0u);
     run.rim_depth = rim;
     run.rim_share = near;
+    run.seen_depth = depth;
 }
 #endif
 
@@ -120,7 +124,7 @@ void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at,
     run.high = counts ? max(high, c) : high;
     run.width = params.kappa * (length(w - run.first) + step_size);
 #ifdef OUTSIDE
-    see(slots, run, s, k, P, at, before, stored_texel);
+    see(slots, run, s, k, P, q, depth, at, before);
 #endif
     run.alive = surface;
     run.last = w;
@@ -160,7 +164,7 @@ void go_on(inout Sectors slots, inout Run run, Side s, Walk k, float at) {
 void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
     Run run = Run(true, false, 2.0, 1.0, 0.0, vec2(0.0), vec2(0.0), vec2(0.0), 0.0, 1.0, 0.0, P, N, vec3(0.0)
 #ifdef OUTSIDE
-                  , 0.0, 0.0
+                  , 0.0, 0.0, 0.0
 #endif
                   );
     Walk k = Walk(line, min(line.reach, line.border), jitter, params.radius * params.radius, footprint(1.0));

@@ -20,7 +20,8 @@ struct Params {
     float inverse_steps;
     int before;
     float openness;
+    int views;
 };
 Params params = Params(stored.radius, stored.thickness, stored.kappa, stored.thin, stored.slices, stored.steps, stored.seed,
                        stored.planes, stored.tolerance, stored.level, stored.strength, stored.suns, stored.exitant,
-                       stored.inverse_steps, stored.before, stored.openness);
+                       stored.inverse_steps, stored.before, stored.openness, stored.views);

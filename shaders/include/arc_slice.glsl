@@ -5,6 +5,8 @@
 // named by their share c of the slice's cosine weight, from 0 (the tangent on the far side) to 1 (the tangent on this side):
 //     F(t) = (cos n sin^2 t + sin n (t - sin t cos t)) / 2 for t >= 0,   c = (F(t) - F(n - pi/2)) / (cos n + n sin n)
 
+const int CELLS = 8; // of equal angle, into which a slice is divided where each needs a look beyond the frame
+
 struct Side {
     vec3 tangent; // unit, outwards
     vec3 up;      // unit: the receiver's normal projected into the slice

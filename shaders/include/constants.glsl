@@ -21,3 +21,6 @@
 #define PLANE_LIGHT 3    // rgb: mean of what its pixels send; w how far they may lie off it, negative for uneven ground
 #define PLANE_MASK 4     // 4 columns: 16 rows of 16 bits over the support: the picture does not show the plane to be absent there
 #define PLANE_COLUMNS 8
+
+#define SURROUND_WIDTH 512 // of the map about the eye (src/passes/surround.h)
+#define SURROUND_HEIGHT 256

@@ -26,7 +26,7 @@ static void print_bash_case(FILE *to, const option_row *row, const option_values
     fprintf(to, "    --%s", row->name);
     if (row->letter) fprintf(to, " | -%c", row->letter);
     fprintf(to, ")\n        ");
-    if (row->kind == OPT_PATH) {
+    if (row->kind == OPT_PATH || row->kind == OPT_PATHS) {
         fprintf(to, "COMPREPLY=($(compgen -d -- \"$cur\") $(compgen -f -X '!");
         print_glob(to, row);
         fprintf(to, "' -- \"$cur\"))\n        compopt -o filenames\n        return ;;\n");
@@ -94,7 +94,7 @@ static void print_zsh_row(FILE *to, const option_row *row, const option_values *
         return;
     }
     fprintf(to, ":%s:", row->name);
-    if (row->kind == OPT_PATH) {
+    if (row->kind == OPT_PATH || row->kind == OPT_PATHS) {
         fprintf(to, "_files -g \"");
         print_glob(to, row);
         fprintf(to, "\"");

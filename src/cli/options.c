@@ -179,6 +179,13 @@ static bool set_text(const option_row *row, const char *text, void *field, error
     return true;
 }
 
+static bool add_path(const option_row *row, const char *text, path_list *field, error *e)
+{
+    if (field->count == OPT_MOST_PATHS)
+        return err_set(e, ERR_USAGE, NULL, NULL, "--%s may be given %d times, not more", row->name, OPT_MOST_PATHS);
+    return set_text(row, text, &field->path[field->count], e) && (field->count++, true);
+}
+
 static bool set_word(const option_row *row, const char *text, void *field, error *e)
 {
     const option_word *word = find_word(row, text);
@@ -206,6 +213,8 @@ static bool set_value(const option_row *row, const char *text, options *o, error
     case OPT_TEXT:
     case OPT_PATH:
         return set_text(row, text, field, e);
+    case OPT_PATHS:
+        return add_path(row, text, field, e);
     case OPT_INT:
     case OPT_REAL:
         return set_number(row, text, field, e);

@@ -44,6 +44,13 @@ typedef enum completion_part {
 // eight covered rooms and halls an outside that is all open is 5 to 23 times too bright.
 #define OUTSIDE_COVERED 0.08
 
+// The files of an option that may be given several times.
+enum { OPT_MOST_PATHS = 16 };
+typedef struct path_list {
+    const char *path[OPT_MOST_PATHS];
+    int count;
+} path_list;
+
 // What the user asked for. Strings point into argv or to constants; NULL means "not given". Defaults: options_defaults().
 typedef struct options {
     const char *inputs[OPT_MAX_INPUTS];
@@ -77,6 +84,7 @@ typedef struct options {
     const char *bounce; // none, or a name of passes/method.h; NULL = the method's own where it has one
     double bounce_strength;
     int vpl_count;
+    path_list also;      // further G-buffers
     const char *proxies; // spheres the camera does not see; may be a pattern
 
     const char *env;

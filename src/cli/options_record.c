@@ -62,11 +62,18 @@ static void number_text(double v, char *buf, size_t size)
     }
 }
 
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash && slash[1] ? slash + 1 : path;
+}
+
 // The value of a row as text, or NULL when it has none. buf is scratch.
 static const char *value_text(const option_row *row, const options *o, char *buf, size_t size)
 {
     const char *field = (const char *)o + row->offset;
     double v = 0;
+    if (row->kind == OPT_PATHS) return NULL; // several: put_row; the digest holds their content
     if (row->kind == OPT_FLAG) return *(const bool *)field ? "" : NULL;
     if (row->kind == OPT_RADIUS) {
         if (o->radius_unit == RADIUS_AUTO) return "auto";
@@ -87,8 +94,7 @@ static const char *value_text(const option_row *row, const options *o, char *buf
     if (row->kind == OPT_TEXT || row->kind == OPT_PATH) {
         const char *text;
         memcpy(&text, field, sizeof text);
-        const char *slash = text && row->kind == OPT_PATH ? strrchr(text, '/') : NULL;
-        return slash && slash[1] ? slash + 1 : text;
+        return text && row->kind == OPT_PATH ? base_name(text) : text;
     }
     if (row->kind == OPT_REAL) {
         memcpy(&v, field, sizeof v);
@@ -105,19 +111,30 @@ static const char *value_text(const option_row *row, const options *o, char *buf
     return buf;
 }
 
-static bool same(const char *a, const char *b) { return a == b || (a && b && strcmp(a, b) == 0); }
-
-static void put_row(record *r, const option_row *row, const options *o, const options *defaults)
+static void put_option(record *r, const option_row *row, const char *value)
 {
-    char buf[64], default_buf[64];
-    const char *value = value_text(row, o, buf, sizeof buf);
-    if (!value || same(value, value_text(row, defaults, default_buf, sizeof default_buf))) return;
     if (r->used) put_string(r, " ");
     put_string(r, "--");
     put_string(r, row->name);
     if (row->kind == OPT_FLAG) return;
     put_string(r, strncmp(value, "--", 2) == 0 ? "=" : " "); // which would be taken for the next option
     put_value(r, value);
+}
+
+static bool same(const char *a, const char *b) { return a == b || (a && b && strcmp(a, b) == 0); }
+
+static void put_row(record *r, const option_row *row, const options *o, const options *defaults)
+{
+    char buf[64], default_buf[64];
+    if (row->kind == OPT_PATHS) {
+        path_list list;
+        memcpy(&list, (const char *)o + row->offset, sizeof list);
+        for (int i = 0; i < list.count; i++) put_option(r, row, base_name(list.path[i]));
+        return;
+    }
+    const char *value = value_text(row, o, buf, sizeof buf);
+    if (!value || same(value, value_text(row, defaults, default_buf, sizeof default_buf))) return;
+    put_option(r, row, value);
 }
 
 // As a shell takes it, before the command.

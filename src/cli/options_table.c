@@ -71,6 +71,8 @@ const option_row option_rows[] = {
     {.group = GROUP_ESTIMATOR, .name = "outside", .argument = "auto|open|closed|F", .kind = OPT_REAL, .offset = FIELD(outside),
      .words = WORDS({"auto", -1}, {"open", 1}, {"closed", OUTSIDE_COVERED}), .min = 0, .max = 1, .pixels = true, .fallback = "auto",
      .help = "Share of the unseen directions outside the frame through which arc's radiance and suns come: open is 1, closed is 0.08, as in a room whose windows are not in the picture, and 0 lets nothing in. Directions that pass through an opening behind which the picture shows the background are open whatever is said here. What is closed sends the picture's mean light into the bounce. Auto is open, unless the picture shows a roof over the camera: surfaces that face down, above the eye, not seen to end under the sky; it needs --env and to know which way is up, and is decided once for a sequence. Occlusion does not change."},
+    {.group = GROUP_ESTIMATOR, .name = "also", .argument = "FILE", .kind = OPT_PATHS, .offset = FIELD(also), .pixels = true,
+     .help = "A further G-buffer of the same scene, for arc's radiance, suns and bounce: another frame of the shot, a reverse angle, or a lat-long (360 degree) render; up to 16 by giving the option again. It needs a position pass in world space. Directions that leave the frame are looked up in all of them, and where they show nothing --outside decides."},
     {.group = GROUP_ESTIMATOR, .name = "angle-bias", .argument = "DEG", .kind = OPT_REAL, .offset = FIELD(angle_bias), .min = 0,
      .max = 90, .pixels = true, .fallback = "0",
      .help = "For hbao: angle above the tangent plane below which nothing occludes. 10 to 30 hides the facets of coarse models, and all shallow occlusion with them."},

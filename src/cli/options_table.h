@@ -17,6 +17,7 @@ typedef enum option_kind {
     OPT_SWITCH, // bool, one of the words
     OPT_ENUM,   // int or enum, one of the words
     OPT_TEXT,   // const char *, any text
+    OPT_PATHS,  // path_list: a file name, once for each time that the option is given
     OPT_PATH,   // const char *, a file name; the header record keeps only its base name
     OPT_INT,    // int in [min, max], or one of the words
     OPT_REAL,   // double in [min, max], or one of the words

@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "passes/method.h"
 #include "passes/openings.h"
+#include "passes/surround.h"
 
 static const float HUGE_LENGTH = 1e15f; // its square is still a float
 static const float KAPPA = 1.0f;        // a run is as thick as it is wide
@@ -54,6 +55,7 @@ arc_params arc_params_of_grid(const pass_context *c, int slices, int steps)
         .level = (float)s->env_level,
         .strength = (float)s->bounce_strength,
         .openness = (float)s->outside,
+        .views = c->view_count,
     };
     if (s->thickness_fixed) p.thin = p.thickness;
     arc_set_grid(&p, slices, steps);
@@ -111,15 +113,32 @@ static bool make_planes(pass_context *c, error *e)
 
 // ---- the outside
 
-bool arc_closes_outside(const pass_context *c) { return c->set.outside < 1.0; }
+bool arc_has_surround(const pass_context *c) { return c->view_count > 0; }
 
-// The depth of openings, at background pixels.
-static bool make_rim(pass_context *c, gpu_image *rim, error *e)
+bool arc_closes_outside(const pass_context *c) { return c->set.outside < 1.0 || arc_has_surround(c); }
+
+static bool make_surround(pass_context *c, error *e)
 {
-    float *depth = mem_pixels((size_t)c->width * (size_t)c->height, sizeof *depth, e);
-    bool ok = depth && openings_find(c->gb, depth, e) && pass_make(c, rim, GL_R32F, 0.0f, e);
-    if (ok) gpu_image_upload(c->g, rim, 0, depth);
-    free(depth);
+    gpu_image *to = &c->image[IMAGE_SURROUND];
+    if (!arc_has_surround(c) || to->id) return true;
+    int height = SURROUND_HEIGHT * c->view_count + 1;
+    float(*shell)[2] = mem_zero((size_t)SURROUND_WIDTH * (size_t)height, sizeof *shell, e);
+    mat3 map_from_camera = m3_mul(c->env ? c->env->map_from_world : m3_identity(), c->set.world_from_camera);
+    bool ok = shell && surround_make(c->views, c->view_count, c->gb, map_from_camera, c->threads, shell, e) &&
+              gpu_image_make(c->g, to, GL_RG32F, SURROUND_WIDTH, height, 1, e);
+    if (ok) gpu_image_upload(c->g, to, 0, shell[0]);
+    free(shell);
+    return ok;
+}
+
+static bool make_rim(pass_context *c, error *e)
+{
+    gpu_image *to = &c->image[IMAGE_RIM];
+    if (!arc_closes_outside(c) || to->id) return true;
+    float *rim = mem_pixels((size_t)c->width * (size_t)c->height, sizeof *rim, e);
+    bool ok = rim && openings_find(c->gb, rim, e) && pass_make_image(c, IMAGE_RIM, e);
+    if (ok) gpu_image_upload(c->g, to, 0, rim);
+    free(rim);
     return ok;
 }
 
@@ -137,23 +156,21 @@ static bool make_surface(pass_context *c, error *e)
 {
     if (c->image[IMAGE_SURFACE].id) return true;
     const arc_params params = arc_params_of(c);
-    variant v = arc_variant(c, "");
-    gpu_image rim = {0};
-    variant_add(&v, arc_closes_outside(c), "OUTSIDE");
+    const variant v = arc_variant(c, "");
     const pass_call call = {
         .program = "surface",
         .variant = v.words,
-        .everywhere = arc_closes_outside(c),
         PASS_PARAMS(params),
-        .reads = {{"planes_image", &c->image[IMAGE_PLANES]}, {"rim_image", &rim}},
+        .reads = {{"planes_image", &c->image[IMAGE_PLANES]}},
         .writes = {{"surface_image", &c->image[IMAGE_SURFACE]}},
     };
-    bool ok = (!arc_closes_outside(c) || make_rim(c, &rim, e)) && pass_make_image(c, IMAGE_SURFACE, e) && pass_run(c, &call, e);
-    gpu_image_free(&rim);
-    return ok;
+    return pass_make_image(c, IMAGE_SURFACE, e) && pass_run(c, &call, e);
 }
 
-bool arc_make_inputs(pass_context *c, error *e) { return make_planes(c, e) && make_surface(c, e); }
+bool arc_make_inputs(pass_context *c, error *e)
+{
+    return make_planes(c, e) && make_surface(c, e) && make_rim(c, e) && make_surround(c, e);
+}
 
 // Bent normals after the rounds: as many slices as each tile came to. The occlusion that this march makes is not used.
 static bool run_bent(pass_context *c, const char *what, error *e)
@@ -251,6 +268,7 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
     variant_add(&v, bounce, "BOUNCE");
     variant_add(&v, bounce && exitant, "EXITANT");
     variant_add(&v, arc_closes_outside(c), "OUTSIDE");
+    variant_add(&v, arc_has_surround(c), "SURROUND");
     const pass_call call = {
         .program = "arc",
         .label = sky && bounce ? "arc light+bounce"
@@ -262,7 +280,9 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
                   {"planes_image", &c->image[IMAGE_PLANES]},
                   {"sender_image", sender},
                   {"albedo_image", albedo},
-                  {"outside_image", &c->image[IMAGE_OUTSIDE_LIGHT]}},
+                  {"outside_image", &c->image[IMAGE_OUTSIDE_LIGHT]},
+                  {"rim_image", &c->image[IMAGE_RIM]},
+                  {"surround_image", &c->image[IMAGE_SURROUND]}},
         .writes = {{"scalar_image", &c->image[IMAGE_VISIBILITY]},
                    {"light_image", &c->image[IMAGE_RADIANCE]},
                    {"indirect_image", &c->image[IMAGE_INDIRECT]}},
@@ -283,14 +303,14 @@ static bool run_bounce(pass_context *c, error *e)
 
 static const variant_row variants[] = {
     {.program = "arc",
-     .pattern = ARC_OCCLUSION("RUNS [PLANES]") " | RUNS [PLANES] LIGHT [VISIBILITY] [OUTSIDE] | "
-                                               "RUNS [PLANES] LIGHT [VISIBILITY] BOUNCE EXITANT [OUTSIDE] | "
-                                               "RUNS [PLANES] BOUNCE [EXITANT] [OUTSIDE]"},
+     .pattern = ARC_OCCLUSION("RUNS [PLANES]") " | RUNS [PLANES] LIGHT [VISIBILITY] [OUTSIDE] [SURROUND] | "
+                                               "RUNS [PLANES] LIGHT [VISIBILITY] BOUNCE EXITANT [OUTSIDE] [SURROUND] | "
+                                               "RUNS [PLANES] BOUNCE [EXITANT] [OUTSIDE] [SURROUND]"},
     {.program = "outside_light", .pattern = ""},
     {.program = "plane_light", .pattern = ""},
-    {.program = "suns", .pattern = "[OUTSIDE]"},
+    {.program = "suns", .pattern = "[OUTSIDE] [SURROUND]"},
     {.program = "suns_add", .pattern = "[VISIBILITY]"},
-    {.program = "surface", .pattern = "[PLANES] [OUTSIDE]"},
+    {.program = "surface", .pattern = "[PLANES]"},
     {0},
 };
 

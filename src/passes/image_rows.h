@@ -57,5 +57,9 @@ IMAGE(HALF_DIFFERENCE, .name = "half-difference", .format = GL_R32F)
 IMAGE(PLANES, .name = "planes", .format = GL_RGBA32F)
 // Depth and normal in one texel, for the slice marches.
 IMAGE(SURFACE, .name = "surface", .format = GL_RG32UI)
+// What further G-buffers show around the eye, of a size of its own (surround.h).
+IMAGE(SURROUND, .name = "surround", .format = GL_RG32F)
+// The depth of the opening that a pixel shows the outdoors through; 0: it does not (openings.h).
+IMAGE(RIM, .name = "rim of openings", .format = GL_R32F)
 // The light that surfaces outside the frame are taken to send: one texel.
 IMAGE(OUTSIDE_LIGHT, .name = "light of the outside", .format = GL_RGBA32F)

@@ -9,12 +9,6 @@
 static const double FACES_DOWN = -0.5;
 enum { ROOF_SAMPLES = 20000 }; // about so many pixels are looked at
 
-// The nearest surface on one side of a pixel; depth 0: none. `at`: its row or column.
-typedef struct side {
-    float depth;
-    int at;
-} side;
-
 static bool is_empty(const gbuffer *gb, int x, int y)
 {
     if (x < 0 || y < 0 || x >= gb->width || y >= gb->height) return true;
@@ -37,56 +31,135 @@ static bool shows_nothing(const gbuffer *gb, int x, int y)
     return shows && is_empty(gb, x, y);
 }
 
-static double between(const gbuffer *gb, side a, side b, int at)
+// ---- the outdoors
+
+static const float BEYOND = 1.5f; // a surface is outdoors if it lies this many times as far as the rim,
+// and its inverse depth changes by no more than this share of the rim's from one cell to the next. On the screen the inverse
+// depth of a plane is linear.
+static const float ALONG = 0.1f;
+static const float ALIKE = 2.0f; // two sides of one opening differ by no more than this factor
+
+typedef struct grid {
+    const float *depth;
+    int width, height;
+    bool wraps;
+    float *rim;
+} grid;
+
+static bool is_surface(float depth) { return depth > 0.0f && depth < INFINITY; }
+
+// The cell beside (x, y), or -1.
+static long beside(const grid *g, int x, int y, int k)
 {
-    if (a.depth == 0.0f || b.depth == 0.0f) return (double)fmaxf(a.depth, b.depth);
-    double t = (double)(at - a.at) / (double)(b.at - a.at), p = (double)a.depth, q = (double)b.depth;
-    return gb->camera.kind == CAMERA_ORTHOGRAPHIC ? p + t * (q - p) : 1.0 / ((1.0 - t) / p + t / q);
+    static const int dx[] = {-1, 1, 0, 0}, dy[] = {0, 0, -1, 1};
+    x += dx[k], y += dy[k];
+    if (g->wraps) x = (x + g->width) % g->width;
+    return x < 0 || y < 0 || x >= g->width || y >= g->height ? -1 : (long)y * g->width + x;
 }
 
-static void look(const gbuffer *gb, int x, int y, int at, side *last)
+// The nearest surface on one side of a cell; depth 0: none.
+typedef struct side {
+    float depth;
+    int steps;
+} side;
+
+// The rim between two opposite sides. The inverse depth of a plane is linear on the screen. Where one side is much farther it is
+// not of the same opening, but ground that is seen through it.
+static float between(side a, side b)
 {
-    float depth = gb->depth[(size_t)y * (size_t)gb->width + (size_t)x];
-    if (depth > 0.0f) *last = (side){depth, at};
+    if (a.depth == 0.0f || b.depth == 0.0f) return fmaxf(a.depth, b.depth);
+    float near = fminf(a.depth, b.depth), far = fmaxf(a.depth, b.depth), t = (float)a.steps / (float)(a.steps + b.steps);
+    return far > ALIKE * near ? near : 1.0f / ((1.0f - t) / a.depth + t / b.depth);
+}
+
+// Along a row or a column, both ways.
+static void sweep(const grid *g, long start, long step, int count, side *ahead, side *behind)
+{
+    int turns = g->wraps && step == 1 ? 2 : 1; // what the border hides is found in the second turn
+    for (int way = 0; way < 2; way++) {
+        side last = {0};
+        for (int i = 0; i < turns * count; i++) {
+            long at = start + step * (way ? count - 1 - i % count : i % count);
+            last.steps++;
+            if (is_surface(g->depth[at])) last = (side){g->depth[at], 0};
+            (way ? behind : ahead)[at] = last;
+        }
+    }
+}
+
+static void rims_of_empty(const grid *g, side *const sides[4])
+{
+    float farthest = 1.0f;
+    long cells = (long)g->width * g->height;
+    for (int y = 0; y < g->height; y++) sweep(g, (long)y * g->width, 1, g->width, sides[0], sides[1]);
+    for (int x = 0; x < g->width; x++) sweep(g, x, g->width, g->height, sides[2], sides[3]);
+    for (long i = 0; i < cells; i++) farthest = is_surface(g->depth[i]) ? fmaxf(farthest, g->depth[i]) : farthest;
+    for (long i = 0; i < cells; i++) {
+        float rim = fmaxf(between(sides[0][i], sides[1][i]), between(sides[2][i], sides[3][i]));
+        g->rim[i] = g->depth[i] != INFINITY ? 0.0f : rim > 0.0f ? rim : farthest;
+    }
+}
+
+// Takes a surface cell with a rim, if it is outdoors and not taken yet.
+static void take(const grid *g, long cell, float rim, float from, long *queue, long *count)
+{
+    float depth = g->depth[cell];
+    if (!is_surface(depth) || g->rim[cell] > 0.0f || depth <= BEYOND * rim) return;
+    if (from > 0.0f && fabsf(1.0f / depth - 1.0f / from) > ALONG / rim) return;
+    g->rim[cell] = rim;
+    queue[(*count)++] = cell;
+}
+
+static void spread(const grid *g, long *queue)
+{
+    long count = 0, cells = (long)g->width * g->height;
+    for (long i = 0; i < cells; i++)
+        for (int k = 0; k < 4 && g->depth[i] == INFINITY; k++) {
+            long other = beside(g, (int)(i % g->width), (int)(i / g->width), k);
+            if (other >= 0) take(g, other, g->rim[i], 0.0f, queue, &count);
+        }
+    for (long i = 0; i < count; i++)
+        for (int k = 0; k < 4; k++) {
+            long other = beside(g, (int)(queue[i] % g->width), (int)(queue[i] / g->width), k);
+            if (other >= 0) take(g, other, g->rim[queue[i]], g->depth[queue[i]], queue, &count);
+        }
+}
+
+bool outdoors_find(const float *depth, int width, int height, bool wraps, float *rim, error *e)
+{
+    size_t cells = (size_t)width * (size_t)height;
+    const grid g = {depth, width, height, wraps, rim};
+    side *sides = mem_pixels(4 * cells, sizeof *sides, e);
+    long *queue = sides ? mem_pixels(cells, sizeof *queue, e) : NULL;
+    if (queue) {
+        side *const all[4] = {sides, sides + cells, sides + 2 * cells, sides + 3 * cells};
+        rims_of_empty(&g, all);
+        spread(&g, queue);
+        // Once more, now that ground which is seen through an opening is known and no longer taken for its rim.
+        float *indoors = (float *)queue;
+        for (size_t i = 0; i < cells; i++) indoors[i] = rim[i] > 0.0f ? INFINITY : depth[i];
+        rims_of_empty(&(grid){indoors, width, height, wraps, rim}, all);
+    }
+    free(queue);
+    free(sides);
+    return queue != NULL;
 }
 
 bool openings_find(const gbuffer *gb, float *rim, error *e)
 {
-    size_t width = (size_t)gb->width, most = width > (size_t)gb->height ? width : (size_t)gb->height;
-    side *before = mem_zero(most + width, sizeof *before, e), *below = before ? before + most : NULL;
-    float *down = before ? mem_pixels(width * (size_t)gb->height, sizeof *down, e) : NULL;
-    int *down_at = down ? mem_pixels(width * (size_t)gb->height, sizeof *down_at, e) : NULL;
-    float farthest = 0.0f;
-    if (!down_at) goto out;
-    // Downwards: what is above each pixel.
+    float *depth = mem_pixels((size_t)gb->width * (size_t)gb->height, sizeof *depth, e), *to = depth;
+    if (!depth) return false;
     for (int y = 0; y < gb->height; y++)
         for (int x = 0; x < gb->width; x++) {
-            size_t i = (size_t)y * width + (size_t)x;
-            look(gb, x, y, y, &below[x]);
-            down[i] = below[x].depth, down_at[i] = below[x].at;
-            farthest = fmaxf(farthest, gb->depth[i]);
+            float z = gb->depth[(size_t)y * (size_t)gb->width + (size_t)x];
+            *to++ = z > 0.0f ? z : shows_nothing(gb, x, y) ? INFINITY : 0.0f;
         }
-    for (size_t x = 0; x < width; x++) below[x] = (side){0};
-    // Upwards, with what is below; and in each row what is to the left and to the right.
-    for (int y = gb->height - 1; y >= 0; y--) {
-        side left = {0}, right = {0};
-        for (int x = 0; x < gb->width; x++) look(gb, x, y, x, &left), before[x] = left;
-        for (int x = gb->width - 1; x >= 0; x--) {
-            size_t i = (size_t)y * width + (size_t)x;
-            look(gb, x, y, x, &right);
-            look(gb, x, y, y, &below[x]);
-            rim[i] = 0.0f;
-            if (!shows_nothing(gb, x, y)) continue;
-            double depth = fmax(between(gb, before[x], right, x), between(gb, (side){down[i], down_at[i]}, below[x], y));
-            rim[i] = depth > 0.0 ? (float)depth : farthest;
-        }
-    }
-out:
-    free(down_at);
-    free(down);
-    free(before);
-    return e->code == ERR_NONE;
+    bool ok = outdoors_find(depth, gb->width, gb->height, false, rim, e);
+    free(depth);
+    return ok;
 }
+
+// ---- the roof
 
 // Screen position of a direction in front of the eye.
 static void project(const camera *c, vec3 d, double *x, double *y)

@@ -5,11 +5,18 @@
 
 #include "gbuffer/gbuffer.h"
 
-// Fills `rim`, width x height: 0 where the picture does not show an empty view ray. Elsewhere the planar depth of the opening,
-// beyond which the view ray is taken to be outdoors: the depths of the nearest surfaces to the left and to the right,
-// interpolated (1/z, with an orthographic camera z), or the same above and below, whichever is farther. The nearer of the two is
-// often an object that stands before the opening. A pixel that a surface covers in part shows no empty ray, nor does one that is
-// part of no empty 3 x 3 pixels: it may be a crack between two surfaces. False only for want of memory.
+// Where a grid of depths shows the outdoors: empty cells, and surfaces that are seen through the same opening as they.
+//
+// depth: width x height; 0 nothing is known, INFINITY empty, else the depth of a surface. wraps: the left border meets the right
+// one. rim: filled with 0 where the outdoors are not seen, elsewhere with the depth of the opening, beyond which the ray is
+// outdoors. Of an empty cell it is interpolated (1/depth) between the nearest surfaces to the left and to the right, or above and
+// below, whichever is farther: the nearer one is often something that stands before the opening. Of two sides that differ by more
+// than a factor of 2 the farther one is ground seen through the opening, and does not count. A surface beside an empty cell and
+// more than half as far again as its rim is outdoors too, and so on along that surface.
+bool outdoors_find(const float *depth, int width, int height, bool wraps, float *rim, error *e);
+
+// The same of a frame. A pixel that a surface covers in part is not empty, nor is one that is part of no empty 3 x 3 pixels: it
+// may be a crack between two surfaces. False only for want of memory.
 bool openings_find(const gbuffer *gb, float *rim, error *e);
 
 // The share of the picture that shows a roof over the eye: surfaces that face down, lie above the eye, and are not seen to end

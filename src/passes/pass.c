@@ -104,6 +104,8 @@ pass_context pass_like(const pass_context *c, const gbuffer *gb, const pass_sett
         .gb = gb,
         .env = c->env,
         .environment = c->environment,
+        .views = c->views,
+        .view_count = c->view_count,
         .proxies = c->proxies,
         .sunless = c->sunless,
         .trace = c->trace,

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "gbuffer/gbuffer.h"
+#include "gbuffer/world_view.h"
 #include "gpu/gpu.h"
 #include "light/environment.h"
 #include "light/proxies.h"
@@ -102,9 +103,11 @@ typedef struct pass_context {
     const environment *env;              // borrowed; NULL without light
     gpu_image environment;               // borrowed: its texture; id 0 for the white one
     const float *relight_sh[SH_IMAGES];  // --from-sh: 4 a pixel as in sh, borrowed; NULL: s3ho measures
-    const proxy_set *proxies;            // borrowed; NULL or empty: none
-    pass_sunless *sunless;               // borrowed, lives as long as the batch
-    struct trace_scene *trace;           // the same; for raytrace
+    const world_view *views;             // borrowed: what further G-buffers show
+    int view_count;
+    const proxy_set *proxies;  // borrowed; NULL or empty: none
+    pass_sunless *sunless;     // borrowed, lives as long as the batch
+    struct trace_scene *trace; // the same; for raytrace
 
     int width, height;
     gpu_image image[IMAGE_COUNT]; // id 0: the frame has none, or its pass has not run

@@ -92,11 +92,16 @@ bool pass_suns(pass_context *c, error *e)
     params.inverse_steps = 1.0f / (float)params.steps;
     put_suns(c, &params);
     gpu_image light = {0};
+    variant v = {{0}};
+    variant_add(&v, arc_closes_outside(c), "OUTSIDE");
+    variant_add(&v, arc_has_surround(c), "SURROUND");
     const pass_call march = {
         .program = "suns",
-        .variant = arc_closes_outside(c) ? "OUTSIDE" : NULL,
+        .variant = v.words,
         PASS_PARAMS(params),
-        .reads = {{"surface_image", &c->image[IMAGE_SURFACE]}},
+        .reads = {{"surface_image", &c->image[IMAGE_SURFACE]},
+                  {"rim_image", &c->image[IMAGE_RIM]},
+                  {"surround_image", &c->image[IMAGE_SURROUND]}},
         .writes = {{"sun_image", &light}},
     };
     const pass_call add = {

@@ -79,6 +79,8 @@ bool run_files_list(const options *o, run_files *out, error *e)
         ok = add(out, input, e);
     }
     for (size_t i = 0; ok && i < sizeof others / sizeof *others; i++) ok = add(out, others[i], e);
+    for (int i = 0; ok && i < o->also.count; i++)
+        ok = add(out, (run_file){.what = "--also", .path = o->also.path[i], .decides = true, .once = true}, e);
     ok = ok && add_materials(o, out, e);
     if (!ok) run_files_free(out);
     return ok;

@@ -32,8 +32,9 @@ typedef struct run_files {
     int owned_count;
 } run_files;
 
-// ERR_INPUT where the system does not say what is there. Lists inputs, environment, camera, proxies, mesh and its material files,
-// OpenColorIO config, output, preview and report. A mesh that cannot be read has no material files here; reading it says why.
+// ERR_INPUT where the system does not say what is there. Lists inputs, --also, environment, camera, proxies, mesh and its
+// material files, OpenColorIO config, output, preview and report. A mesh that cannot be read has no material files here; reading
+// it says why.
 bool run_files_list(const options *o, run_files *out, error *e);
 void run_files_free(run_files *files);
 

@@ -172,6 +172,8 @@ bool filter_begin(job *j, frame_result *r, error *e)
         .gb = &gb,
         .env = j->env_loaded ? &j->env : NULL,
         .environment = j->env_image,
+        .views = j->views,
+        .view_count = j->view_count,
         .proxies = &r->proxies,
         .sunless = &j->sunless,
         .trace = &j->trace,

@@ -54,6 +54,21 @@ static bool check_world(const job *j, const frame_result *r, error *e)
                    "FILE or, if the normals are in world space, --normal-space world");
 }
 
+// What further G-buffers show, once for all frames.
+static bool load_views(job *j, const frame_result *r, error *e)
+{
+    enum { MOST_PIXELS = 1 << 19 };
+    const path_list *list = &j->o->also;
+    if (list->count == 0 || !r->plan.light || j->view_count == list->count || r->gb.valid == 0) return true;
+    if (!r->gb.camera.has_world || r->gb.camera.kind != CAMERA_PERSPECTIVE)
+        return err_set(e, ERR_INPUT, r->file->path, NULL,
+                       "--also is in world space, and this frame has no perspective camera that is known there; give it with "
+                       "--camera FILE");
+    for (; j->view_count < list->count; j->view_count++)
+        if (!read_world_view(j, list->path[j->view_count], MOST_PIXELS, &j->views[j->view_count], e)) return false;
+    return true;
+}
+
 // The frame's own spheres. Only a world camera can place them.
 static bool load_proxies(const job *j, frame_result *r, error *e)
 {
@@ -95,7 +110,7 @@ bool frame_begin(job *j, frame_result *r, error *e)
 {
     if (!job_open_device(j, e)) return false;
     for (frame_result *v = r; v; v = v->next_view)
-        if (!prepare_light(j, v, e) || !filter_begin(j, v, e)) return false;
+        if (!prepare_light(j, v, e) || !load_views(j, v, e) || !filter_begin(j, v, e)) return false;
     return true;
 }
 
@@ -126,7 +141,7 @@ bool frame_filter(job *j, frame_result *r, error *e)
 {
     if (!job_open_device(j, e) || !frame_prepare(j, r, e)) return false;
     for (frame_result *v = r; v; v = v->next_view)
-        if (!prepare_light(j, v, e) || !filter_frame(j, v, e)) return false;
+        if (!prepare_light(j, v, e) || !load_views(j, v, e) || !filter_frame(j, v, e)) return false;
     return true;
 }
 

@@ -30,6 +30,8 @@ void job_forget_light(job *j)
     trace_scene_close(&j->trace);
     if (j->env_loaded) environment_free(&j->env);
     j->env_loaded = false;
+    for (int i = 0; i < j->view_count; i++) world_view_free(&j->views[i]);
+    j->view_count = 0;
     j->sunless = (pass_sunless){0};
     j->trace = (trace_scene){0};
 }

@@ -29,7 +29,9 @@ typedef struct job {
     environment env;
     gpu_image env_image;
     pass_sunless sunless;
-    trace_scene trace;        // --mesh
+    trace_scene trace;                // --mesh
+    world_view views[OPT_MOST_PATHS]; // --also
+    int view_count;
     const volatile int *stop; // borrowed, may be NULL: once it is not zero, frames are dropped unless they are being written
     progress *progress;       // borrowed, may be NULL
     bool no_floats;           // nobody looks at a frame's `layers`: they are not kept

@@ -193,3 +193,18 @@ bool read_and_open(job *j, const char *const *inputs, int count, frame_result *r
     if (opened && !d.ok) *e = d.e;
     return opened && d.ok;
 }
+
+bool read_world_view(const job *j, const char *path, size_t most, world_view *out, error *e)
+{
+    const gbuffer_options g = {.threads = j->threads};
+    resolution r;
+    exrio_file *file = NULL;
+    bool ok = exrio_file_open(path, &file, e) && resolve_channels(file, &(resolve_options){0}, &r, j->log, e);
+    for (int i = 0; ok && i < ROLE_COUNT; i++)
+        for (int k = 0; k < r.components[i]; k++)
+            if ((i == ROLE_POSITION || i == ROLE_NORMAL || i == ROLE_DEPTH) && r.channels[i][k].part >= 0)
+                file->parts[r.channels[i][k].part].channels[r.channels[i][k].channel].wanted = true;
+    ok = ok && exrio_file_load(file, j->threads, e) && world_view_read(file, &r, &g, most, out, j->log, e);
+    exrio_file_close(file);
+    return ok;
+}

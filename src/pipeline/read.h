@@ -9,6 +9,9 @@
 // and prepares the frame.
 bool read_and_open(job *j, const char *const *inputs, int count, frame_result *r, error *e);
 
+// What a further G-buffer shows of the world, of at most `most` of its pixels.
+bool read_world_view(const job *j, const char *path, size_t most, world_view *out, error *e);
+
 // Adds to a stage's times what has passed since.
 void frame_lap(frame_result *r, stage s, stopwatch *since);
 

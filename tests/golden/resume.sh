@@ -71,6 +71,11 @@ table 0.5
 redo 'a look-up table' in.exr $o --ocio c.ocio --albedo-colorspace c
 table 0.6
 redo 'another look-up table' in.exr $o --ocio c.ocio --albedo-colorspace c
+sky=$here/samples/sky_soft.exr
+cp "$here/samples/box.exr" also.exr
+redo 'a further G-buffer' box.exr $o --env "$sky" --also also.exr
+cp "$here/samples/horizon.exr" also.exr
+redo 'another further G-buffer' box.exr $o --env "$sky" --also also.exr
 cp -r "$here/shaders" shaders
 SSDO_SHADER_DIR=$dir/shaders
 export SSDO_SHADER_DIR

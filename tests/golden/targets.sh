@@ -13,6 +13,7 @@ cp "$samples/sky_soft.exr" env.exr
 echo '{"fov": 50}' >camera.json
 echo '{"spheres": []}' >proxies.json
 cp proxies.json p.0003.json
+cp in.exr also.exr
 printf 'mtllib mesh.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >mesh.obj
 echo 'newmtl a' >mesh.mtl
 printf 'ocio_profile_version: 1\n' >config.ocio
@@ -42,6 +43,7 @@ same 'the report and the input are' in.exr -o o.exr --report in.exr
 same 'the preview and the input are' in.exr -o o.exr --preview link.exr
 same 'the output and --env are' in.exr -o env.exr --env env.exr
 same 'the output and --camera are' in.exr -o camera.json --camera camera.json
+same 'the output and --also are' in.exr -o also.exr --also also.exr
 same 'the report and --proxies are' in.exr -o o.exr --proxies proxies.json --report proxies.json
 same 'the output and --mesh are' in.exr -o mesh.obj --mesh mesh.obj --method raytrace
 same 'the report and a material file of --mesh are' in.exr -o o.exr --mesh mesh.obj --method raytrace --report mesh.mtl

@@ -7,10 +7,12 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "gbuffer/world_view.h"
 #include "must.h"
 #include "passes/openings.h"
 #include "rig.h"
@@ -100,8 +102,8 @@ typedef struct light {
     double rms, ratio; // of the difference over the truth's rms; of the means
 } light;
 
-// A pixel in 7 x 7 against rays.
-static light light_of(const scene *s, double outside)
+// A pixel in 7 x 7 against rays; with what further views show.
+static light light_of(const scene *s, double outside, const world_view *more)
 {
     enum { W = 160, H = 90, STEP = 7 };
     static rig r;
@@ -112,7 +114,9 @@ static light light_of(const scene *s, double outside)
     look(s, W, H, 60.0, &gb);
     pass_settings set = rig_settings(method_find("arc"), 0.5);
     set.thickness = 0.1, set.planes = true, set.blur = 4, set.outside = outside;
+    if (more) r.job.views[r.job.view_count++] = *more;
     must(rig_run(&r, &gb, method_find("arc"), &set, 1 << LAYER_RADIANCE, &out, &e), &e);
+    r.job.view_count = 0; // borrowed
     tracer t = scene_tracer(s);
     truth_options o = {.rays = 1024, .offset = 1e-4}; // the points are rounded to floats
     double se = 0, sx = 0, st = 0, stt = 0;
@@ -136,13 +140,80 @@ static void light_comes_through_the_window(void **state)
 {
     (void)state;
     scene s = room(true, true);
-    light closed = light_of(&s, 0.0), open = light_of(&s, 1.0), part = light_of(&s, 0.5);
+    light closed = light_of(&s, 0.0, NULL), open = light_of(&s, 1.0, NULL), part = light_of(&s, 0.5, NULL);
     printf("figure: room with a window in view: radiance %.3f of the truth's rms (means %.2f) closed, %.2f (%.1f) open\n",
            closed.rms, closed.ratio, open.rms, open.ratio);
     assert_true(closed.rms < 0.25);
     assert_true(fabs(closed.ratio - 1.0) < 0.2);
     assert_true(open.ratio > 2.0);
     assert_true(part.ratio > closed.ratio && part.ratio < open.ratio);
+}
+
+enum { AROUND_W = 256, AROUND_H = 128 };
+
+// The positions of a lat-long picture of the scene; 0 where it sees nothing.
+static float *around(const scene *s, const latlong_camera *c)
+{
+    error e = {0};
+    tracer t = scene_tracer(s);
+    float *p = mem_zero((size_t)3 * AROUND_W * AROUND_H, sizeof *p, &e);
+    assert_non_null(p);
+    for (int i = 0; i < AROUND_W * AROUND_H; i++) {
+        hit h;
+        vec3 d = latlong_direction(c, AROUND_W, AROUND_H, i % AROUND_W + 0.5, i / AROUND_W + 0.5);
+        if (!t.closest(t.data, c->eye, d, 1e-6, 1e9, &h)) continue;
+        p[3 * i] = (float)h.position.x, p[3 * i + 1] = (float)h.position.y, p[3 * i + 2] = (float)h.position.z;
+    }
+    return p;
+}
+
+static void latlong_cameras_are_found(void **state)
+{
+    (void)state;
+    scene s = room(true, true);
+    for (int k = 0; k < 4; k++) {
+        latlong_camera wanted = {.eye = v3(2.3, 1.1, 1.4), .up = k / 2 ? 1 : 2, .start = 0.4 + 1.3 * k, .sense = k % 2 ? 1 : -1},
+                       c;
+        float *p = around(&s, &wanted);
+        assert_true(latlong_fit(p, AROUND_W, AROUND_H, &c));
+        assert_true(c.up == wanted.up && c.sense == wanted.sense && c.error < 0.1);
+        assert_true(v3_length(v3_sub(c.eye, wanted.eye)) < 0.01);
+        // The lower half of the same picture, stretched: no lat-long camera.
+        memmove(p, p + 3 * AROUND_W * AROUND_H / 2, sizeof *p * 3 * AROUND_W * AROUND_H / 2);
+        assert_false(latlong_fit(p, AROUND_W, AROUND_H, &c));
+        free(p);
+    }
+}
+
+// The window is behind the eye; a lat-long picture from another place shows it.
+static void another_view_shows_the_window(void **state)
+{
+    (void)state;
+    scene s = room(true, true);
+    s.eye = v3(2, 4.6, 1.4), s.target = v3(1.8, 0, 1.1);
+    latlong_camera c = {.eye = v3(1.2, 2.2, 1.3), .up = 2, .start = 1.0, .sense = -1};
+    float *p = around(&s, &c);
+    world_view v = {.eye = c.eye, .latlong = true, .pixel = M_PI / AROUND_H, .points = p};
+    v.empty = calloc((size_t)3 * AROUND_W * AROUND_H, sizeof *v.empty);
+    assert_non_null(v.empty);
+    for (int i = 0; i < AROUND_W * AROUND_H; i++) {
+        if (p[3 * i] == 0.0f && p[3 * i + 1] == 0.0f && p[3 * i + 2] == 0.0f) {
+            vec3 d = latlong_direction(&c, AROUND_W, AROUND_H, i % AROUND_W + 0.5, i / AROUND_W + 0.5);
+            float *to = v.empty + 3 * v.empty_count++;
+            to[0] = (float)d.x, to[1] = (float)d.y, to[2] = (float)d.z;
+        } else {
+            memmove(p + 3 * v.point_count++, p + 3 * i, 3 * sizeof *p);
+        }
+    }
+    light without = light_of(&s, 0.0, NULL), with = light_of(&s, 0.0, &v);
+    printf("figure: room with its window behind the eye: radiance %.3f of the truth's rms without and %.3f (means %.2f) with "
+           "another "
+           "view\n",
+           without.rms, with.rms, with.ratio);
+    assert_true(without.rms == 1.0);
+    assert_true(with.rms < 0.35);
+    assert_true(fabs(with.ratio - 1.0) < 0.2);
+    world_view_free(&v);
 }
 
 // No background is in view, so nothing comes in. In particular the filter of the suns lends no light from surfaces that face
@@ -181,8 +252,13 @@ static void a_closed_place_is_black(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(roofs), cmocka_unit_test(openings),
-                                       cmocka_unit_test(light_comes_through_the_window),
-                                       cmocka_unit_test(a_closed_place_is_black)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(roofs),
+        cmocka_unit_test(openings),
+        cmocka_unit_test(light_comes_through_the_window),
+        cmocka_unit_test(a_closed_place_is_black),
+        cmocka_unit_test(latlong_cameras_are_found),
+        cmocka_unit_test(another_view_shows_the_window),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

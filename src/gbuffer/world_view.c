@@ -1,0 +1,268 @@
+#include "gbuffer/world_view.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "gbuffer/build.h"
+#include "gbuffer/solve.h"
+
+// ---- lat-long cameras
+
+// Half a pixel: positions are sampled within their pixels.
+static const double MOST_ERROR = 0.75;
+enum { FIT_POINTS = 2048, FIT_LEAST = 50 };
+
+static vec3 point_at(const float *positions, int width, size_t x, size_t y)
+{
+    const float *p = positions + 3 * (y * (size_t)width + x);
+    return v3((double)p[0], (double)p[1], (double)p[2]);
+}
+
+static bool is_point(vec3 p) { return isfinite(p.x + p.y + p.z) && (p.x != 0.0 || p.y != 0.0 || p.z != 0.0); }
+
+// Axes (a, b, up) that turn counter-clockwise: x y z with z up, z x y with y up.
+static void split(vec3 p, int up, double to[3])
+{
+    to[0] = up == 2 ? p.x : p.z, to[1] = up == 2 ? p.y : p.x, to[2] = up == 2 ? p.z : p.y;
+}
+
+static vec3 joined(const double from[3], int up)
+{
+    return up == 2 ? v3(from[0], from[1], from[2]) : v3(from[1], from[2], from[0]);
+}
+
+vec3 latlong_direction(const latlong_camera *c, int width, int height, double x, double y)
+{
+    double phi = c->start + c->sense * 2.0 * M_PI * x / width, theta = M_PI * y / height;
+    const double d[3] = {sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)};
+    return joined(d, c->up);
+}
+
+typedef struct fit_point {
+    double at[3], x, y; // place by the axes above, pixel
+} fit_point;
+
+// Of the pixels with a position evenly many.
+static int take_points(const float *positions, int width, int height, int up, fit_point *points)
+{
+    int n = 0;
+    size_t pixels = (size_t)width * (size_t)height, there = 0, seen = 0;
+    for (size_t i = 0; i < pixels; i++) there += is_point(point_at(positions, width, i, 0));
+    for (size_t i = 0; i < pixels && n < FIT_POINTS; i++) {
+        vec3 p = point_at(positions, width, i, 0);
+        if (!is_point(p) || seen++ % (there / FIT_POINTS + 1) != 0) continue;
+        split(p, up, points[n].at);
+        points[n].x = (double)(i % (size_t)width) + 0.5, points[n].y = (double)(i / (size_t)width) + 0.5;
+        n++;
+    }
+    return n;
+}
+
+// For a start and a sense the direction of each pixel is known, and the eye is the point nearest to all lines through the points
+// along their directions: sum (I - d d^T) (p - eye) = 0. Far points do not weigh more: their lines are as exact as near ones'.
+static bool find_eye(const fit_point *points, int n, int width, int height, latlong_camera *c)
+{
+    double m[3][3] = {{0}}, b[3] = {0};
+    for (int i = 0; i < n; i++) {
+        vec3 direction = latlong_direction(c, width, height, points[i].x, points[i].y);
+        double d[3], size = 0.0;
+        split(direction, c->up, d);
+        for (int k = 0; k < 3; k++) size += points[i].at[k] * points[i].at[k];
+        double w = 1.0 / (1e-12 + size);
+        for (int r = 0; r < 3; r++)
+            for (int k = 0; k < 3; k++) {
+                double q = w * ((r == k) - d[r] * d[k]);
+                m[r][k] += q;
+                b[r] += q * points[i].at[k];
+            }
+    }
+    if (!solve_linear(3, m[0], b)) return false;
+    c->eye = joined(b, c->up);
+    return true;
+}
+
+// The median angle, in pixels of the picture's rows.
+static double error_of(const fit_point *points, int n, int width, int height, const latlong_camera *c, double *scratch)
+{
+    for (int i = 0; i < n; i++) {
+        vec3 d = v3_sub(joined(points[i].at, c->up), c->eye), w = latlong_direction(c, width, height, points[i].x, points[i].y);
+        double size = v3_length(d);
+        scratch[i] = size > 0.0 ? acos(fmin(1.0, fmax(-1.0, v3_dot(d, w) / size))) * height / M_PI : 1e9;
+    }
+    return solve_median(scratch, (size_t)n);
+}
+
+// The eye moves with the start, so the start is searched: coarsely, then by golden steps around the best.
+static bool fit_turn(const fit_point *points, int n, int width, int height, latlong_camera *c, double *scratch)
+{
+    enum { COARSE = 72, STEPS = 40 };
+    latlong_camera best = *c;
+    best.error = INFINITY;
+    for (int i = 0; i < COARSE; i++) {
+        latlong_camera t = *c;
+        t.start = 2.0 * M_PI * i / COARSE;
+        if (!find_eye(points, n, width, height, &t)) continue;
+        t.error = error_of(points, n, width, height, &t, scratch);
+        if (t.error < best.error) best = t;
+    }
+    double step = 2.0 * M_PI / COARSE;
+    for (int i = 0; i < STEPS && isfinite(best.error); i++) {
+        bool moved = false;
+        for (int k = -1; k <= 1; k += 2) {
+            latlong_camera t = best;
+            t.start += k * step;
+            if (!find_eye(points, n, width, height, &t)) continue;
+            t.error = error_of(points, n, width, height, &t, scratch);
+            if (t.error < best.error) best = t, moved = true;
+        }
+        if (!moved) step *= 0.5;
+    }
+    *c = best;
+    return isfinite(best.error);
+}
+
+bool latlong_fit(const float *positions, int width, int height, latlong_camera *out)
+{
+    error ignored = {0};
+    out->error = INFINITY;
+    if (width != 2 * height) return false;
+    fit_point *points = mem_zero(FIT_POINTS, sizeof *points, &ignored);
+    double *scratch = mem_zero(FIT_POINTS, sizeof *scratch, &ignored);
+    for (int k = 0; points && scratch && k < 4; k++) {
+        latlong_camera c = {.up = k / 2 ? 1 : 2, .sense = k % 2 ? 1 : -1};
+        int n = take_points(positions, width, height, c.up, points);
+        if (n >= FIT_LEAST && fit_turn(points, n, width, height, &c, scratch) && c.error < out->error) *out = c;
+    }
+    free(points);
+    free(scratch);
+    return out->error <= MOST_ERROR;
+}
+
+// ---- reading
+
+static const double FARTHEST = 1e9; // positions of the background are 0 or far away
+static const double ON_RAY = 0.999; // cosine
+
+static plane plane_of(const exrio_file *file, channel_ref ref, box2 window)
+{
+    plane p = {0};
+    if (ref.part < 0) return p;
+    const exrio_part *part = &file->parts[ref.part];
+    const exrio_channel *c = &part->channels[ref.channel];
+    p.data = c->data, p.type = c->type;
+    p.width = box2_width(part->data_window), p.height = box2_height(part->data_window);
+    p.dx = window.x0 - part->data_window.x0, p.dy = window.y0 - part->data_window.y0;
+    return p;
+}
+
+static float *positions_of(const exrio_file *file, const resolution *r, int *width, int *height, error *e)
+{
+    const box2 window = file->parts[r->main_part].data_window;
+    plane p[3];
+    *width = box2_width(window), *height = box2_height(window);
+    for (int k = 0; k < 3; k++) p[k] = plane_of(file, r->channels[ROLE_POSITION][k], window);
+    float *out = mem_pixels((size_t)*width * (size_t)*height, 3 * sizeof *out, e), *to = out;
+    for (int y = 0; out && y < *height; y++)
+        for (int x = 0; x < *width; x++)
+            for (int k = 0; k < 3; k++) *to++ = (float)plane_get(&p[k], x, y);
+    return out;
+}
+
+static bool make_room(world_view *v, size_t most, error *e)
+{
+    v->points = mem_pixels(most, 3 * sizeof *v->points, e);
+    v->empty = v->points ? mem_pixels(most, 3 * sizeof *v->empty, e) : NULL;
+    return v->empty != NULL;
+}
+
+static void put(float *list, size_t *count, vec3 p)
+{
+    float *to = list + 3 * (*count)++;
+    to[0] = (float)p.x, to[1] = (float)p.y, to[2] = (float)p.z;
+}
+
+static int stride_of(int width, int height, size_t most)
+{
+    int stride = 1;
+    while ((size_t)((width + stride - 1) / stride) * (size_t)((height + stride - 1) / stride) > most) stride++;
+    return stride;
+}
+
+static void take_latlong(const float *positions, int width, int height, const latlong_camera *c, int stride, world_view *v)
+{
+    v->eye = c->eye, v->latlong = true, v->pixel = stride * M_PI / height;
+    for (int y = stride / 2; y < height; y += stride)
+        for (int x = stride / 2; x < width; x += stride) {
+            vec3 p = point_at(positions, width, (size_t)x, (size_t)y), d = latlong_direction(c, width, height, x + 0.5, y + 0.5);
+            double far = v3_length(v3_sub(p, c->eye));
+            bool there = is_point(p) && far < FARTHEST;
+            if (!there)
+                put(v->empty, &v->empty_count, d);
+            else if (v3_dot(v3_sub(p, c->eye), d) > ON_RAY * far) // else the renderer sampled past an edge
+                put(v->points, &v->point_count, p);
+        }
+}
+
+static void take_frame(const gbuffer *gb, int stride, world_view *v)
+{
+    const camera *c = &gb->camera;
+    v->eye = c->origin, v->pixel = stride / c->fx;
+    for (int y = stride / 2; y < gb->height; y += stride)
+        for (int x = stride / 2; x < gb->width; x += stride) {
+            vec3 p = gbuffer_position(gb, x, y);
+            if (p.z > 0.0) {
+                put(v->points, &v->point_count, v3_add(c->origin, m3_apply(c->world_from_camera, p)));
+                continue;
+            }
+            vec3 ray = v3((x + 0.5 - c->cx) / c->fx, (y + 0.5 - c->cy) / c->fy, 1.0);
+            put(v->empty, &v->empty_count, m3_apply(c->world_from_camera, v3_scale(ray, 1.0 / v3_length(ray))));
+        }
+}
+
+bool world_view_read(const exrio_file *file, const resolution *r, const gbuffer_options *options, size_t most, world_view *out,
+                     log_t *log, error *e)
+{
+    int width, height;
+    latlong_camera c;
+    gbuffer gb = {0};
+    float *positions = NULL;
+    bool ok = false;
+    *out = (world_view){0};
+    if (r->components[ROLE_POSITION] < 3)
+        return err_set(e, ERR_INPUT, file->path, NULL,
+                       "it has no position pass, which alone says where in the world its surfaces are");
+    positions = positions_of(file, r, &width, &height, e);
+    if (!positions || !make_room(out, most, e)) goto out;
+    int stride = stride_of(width, height, most);
+    if (latlong_fit(positions, width, height, &c)) {
+        take_latlong(positions, width, height, &c, stride, out);
+        log_info(log, "%s: a lat-long G-buffer, its eye at %.3g %.3g %.3g, %c up, %.2f pixels off in the median", file->path,
+                 c.eye.x, c.eye.y, c.eye.z, c.up == 2 ? 'z' : 'y', c.error);
+        ok = true;
+        goto out;
+    }
+    if (!gbuffer_build(file, r, options, &gb, log, e)) goto out;
+    if (!gb.camera.has_world || gb.camera.kind != CAMERA_PERSPECTIVE) {
+        err_set(
+            e, ERR_INPUT, file->path, NULL,
+            "its positions are not those of a perspective or lat-long camera in world space, so nobody knows from where it was "
+            "seen");
+        goto out;
+    }
+    take_frame(&gb, stride, out);
+    ok = true;
+out:
+    if (!ok) world_view_free(out);
+    gbuffer_free(&gb);
+    free(positions);
+    return ok;
+}
+
+void world_view_free(world_view *v)
+{
+    free(v->points);
+    free(v->empty);
+    *v = (world_view){0};
+}

@@ -1,0 +1,39 @@
+// What a G-buffer shows of the world, whatever camera it was rendered with: points in world space and directions without a
+// surface. A lat-long (360 degree) G-buffer is recognised by its positions.
+#ifndef SSDO_GBUFFER_WORLD_VIEW_H
+#define SSDO_GBUFFER_WORLD_VIEW_H
+
+#include "gbuffer/gbuffer.h"
+
+typedef struct world_view {
+    vec3 eye;
+    bool latlong;
+    double pixel;  // angle of a pixel, radians
+    float *points; // x y z in world space; owned
+    size_t point_count;
+    float *empty; // unit world directions in which the eye sees no surface; owned
+    size_t empty_count;
+} world_view;
+
+// From a file whose channels are loaded and resolved: position, and depth or normal where there are any. At most `most` pixels
+// are taken, evenly. ERR_INPUT where the file has no positions in world space or its camera cannot be found from them. Free with
+// world_view_free.
+bool world_view_read(const exrio_file *file, const resolution *r, const gbuffer_options *options, size_t most, world_view *out,
+                     log_t *log, error *e);
+void world_view_free(world_view *v);
+
+// The eye of a lat-long picture and how its columns turn, from its positions (NaN or all 0: none), width x height x 3: the top
+// row looks along the up axis (2: z, 1: y), the first column at `start` radians about it, the rest by a full turn,
+// counter-clockwise seen from above if `sense` is 1, clockwise if -1. False if the positions are not those of a lat-long camera
+// that stands upright.
+typedef struct latlong_camera {
+    vec3 eye;
+    int up;
+    double start;
+    int sense;
+    double error; // median angle between a position and its pixel's direction, in pixels
+} latlong_camera;
+bool latlong_fit(const float *positions, int width, int height, latlong_camera *out);
+vec3 latlong_direction(const latlong_camera *c, int width, int height, double x, double y);
+
+#endif
