@@ -107,6 +107,7 @@ static void layers_are_the_same(void **state)
         o.layers = cases[i].layers;
         o.env = cases[i].env;
         o.env_scale = cases[i].env_scale;
+        o.outside = 1.0;
         o.output_float = cases[i].floats;
         o.half = cases[i].half;
         o.sh_bands = 3;
