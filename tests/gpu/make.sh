@@ -1,11 +1,11 @@
 #!/bin/sh
 # make.sh BUILD: BUILD/gpu-bundle.tar.xz, for a machine that has a GPU and its driver and nothing of ours: the program, the tests that use
 # GL, the samples, what llvmpipe makes of them, the libraries that a bare machine lacks, and tests/gpu/run.sh.
-# make.sh BUILD FOLDER: the same in FOLDER, packed fast and with only the pictures that run.sh compares on a software device.
+# make.sh BUILD FOLDER: the same in FOLDER, put together without packing and with only the pictures that run.sh compares on a software device.
 set -eu
 build=$1 place=${2:-$1} stage=${2:-$1}/gpu-bundle
 pack='xz -9' cases=.
-[ $# = 1 ] || { pack='xz -0'; cases='^box-|^ortho-|^[a-z]*-hemisphere'; }
+[ $# = 1 ] || { pack=cat; cases='^box-|^ortho-|^[a-z]*-hemisphere'; }
 command -v patchelf >/dev/null 2>&1 || { echo "gpu-bundle: needs patchelf" >&2; exit 1; }
 rm -rf "$stage" && mkdir -p "$stage/bin" "$stage/lib" "$stage/recorded" "$stage/samples"
 
