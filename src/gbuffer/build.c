@@ -59,15 +59,15 @@ plane build_plane(const build *b, role r, int component)
 static void open_planes(build *b)
 {
     for (int c = 0; c < 3; c++) {
-        b->position[c] = build_plane(b, ROLE_POSITION, c);
-        b->normal[c] = build_plane(b, ROLE_NORMAL, c);
+        b->position.p[c] = build_plane(b, ROLE_POSITION, c);
+        b->normal.n[c] = build_plane(b, ROLE_NORMAL, c);
     }
-    b->depth = build_plane(b, ROLE_DEPTH, 0);
+    b->position.z = build_plane(b, ROLE_DEPTH, 0);
     b->alpha = build_plane(b, ROLE_ALPHA, 0);
-    b->has_position = b->position[0].data && b->position[1].data && b->position[2].data;
-    b->has_normal = b->normal[0].data && b->normal[1].data && b->normal[2].data;
-    b->has_depth = b->depth.data != NULL;
-    b->depth_code = (depth_code){.kind = DEPTH_PLANAR, .sign = 1.0};
+    b->position.has_p = b->position.p[0].data && b->position.p[1].data && b->position.p[2].data;
+    b->normal.there = b->normal.n[0].data && b->normal.n[1].data && b->normal.n[2].data;
+    b->position.has_z = b->position.z.data != NULL;
+    b->position.code = (depth_code){.kind = DEPTH_PLANAR, .sign = 1.0};
 }
 
 static bool open_frame(build *b)
@@ -96,15 +96,15 @@ static bool summarise(build *b)
                  "no usable normals in the file: they are rebuilt from depth and show its facets "
                  "(--normal names a channel)");
     defects_warn(b);
-    g->position_verdict.used = g->position_verdict.present && b->has_position;
-    g->depth_verdict.used = g->depth_verdict.present && b->has_depth;
+    g->position_verdict.used = g->position_verdict.present && b->position.has_p;
+    g->depth_verdict.used = g->depth_verdict.present && b->position.has_z;
     if (g->position_is_camera_space) g->camera.has_world = false;
-    if (b->has_header_pose)
-        g->camera.world_from_camera = b->world_from_camera, g->camera.origin = b->eye, g->camera.has_world = true;
-    if (b->rotation_from_normals) g->camera.world_from_camera = b->world_from_camera, g->camera.has_world = false;
-    g->camera.has_rotation = g->camera.has_world || b->rotation_from_normals;
+    if (b->camera.has_header_pose)
+        g->camera.world_from_camera = b->camera.world_from_camera, g->camera.origin = b->camera.eye, g->camera.has_world = true;
+    if (b->camera.rotation_from_normals) g->camera.world_from_camera = b->camera.world_from_camera, g->camera.has_world = false;
+    g->camera.has_rotation = g->camera.has_world || b->camera.rotation_from_normals;
     const mat3 y_up = {{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
-    g->normal_from_camera = b->has_normal         ? m3_transpose(b->normal_to_camera)
+    g->normal_from_camera = b->normal.there       ? m3_transpose(b->normal.to_camera)
                             : g->camera.has_world ? g->camera.world_from_camera
                                                   : y_up;
     return true;
@@ -123,9 +123,9 @@ bool gbuffer_build(const exrio_file *file, const resolution *r, const gbuffer_op
         done = filtered_mend(&b) && albedo_make(&b) && coverage_make(&b) && colours_make(&b) && summarise(&b);
     }
     free(b.surface);
-    free(b.raw);
-    free(b.points);
-    free(b.point_depth);
+    free(b.position.raw);
+    free(b.sample.points);
+    free(b.sample.depth);
     if (!done) gbuffer_free(out);
     return done;
 }

@@ -41,6 +41,59 @@ typedef enum surface {
     SURFACE_ORIGIN, // P is exactly (0, 0, 0) with a valid depth: decided when the camera is known
 } surface;
 
+// P and Z: what the file has of them, and how they are read. A `raw` depth is what P (or Z) says before it is moved onto the
+// pixel's ray; 0 where there is none.
+typedef struct position_evidence {
+    plane p[3], z;
+    bool has_p, has_z; // present and believed
+    depth_code code;   // of Z
+    float *raw;
+    bool z_measured;      // Z is known to be planar or radial depth
+    bool z_wins;          // z comes from Z
+    double z_offset;      // orthographic: z = Z + offset
+    double far_pixels;    // a P further than this from its pixel is not believed
+    bool lateral;         // P is fine enough to tell where in its pixel it was sampled
+    double rounding;      // of raw, in scene units, and
+    double typical_depth; // the depth it is meant at: medians
+} position_evidence;
+
+// Where the camera stands, as far as gbuffer.camera does not say it yet.
+typedef struct camera_evidence {
+    bool has_pose;        // camera->world_from_camera takes P's space to camera space
+    bool has_rotation;    // the camera's world_from_camera is that of a flag or of the positions
+    bool has_header_pose; // else: world_from_camera is the header's, not confirmed yet
+    header_pose header;
+    bool rotation_from_normals; // else: the normals gave the camera's rotation; its place is unknown
+    mat3 world_from_camera;     // has_header_pose or rotation_from_normals: the camera's in the end
+    vec3 eye;
+} camera_evidence;
+
+// N and how it is read.
+typedef struct normal_evidence {
+    plane n[3];
+    bool there;     // present and believed
+    mat3 to_camera; // takes the file's normals to camera space
+    normal_encoding encoding;
+    double longest; // as stored; longer ones are damaged
+} normal_evidence;
+
+// A sample of the surfaces, spread over the frame, with their Z (NaN without).
+typedef struct surface_sample {
+    camera_point *points;
+    double *depth;
+    size_t count;
+    size_t candidates; // surface pixels found by classification
+} surface_sample;
+
+// What could not be used (defects.c): counted by rows on several threads.
+typedef struct defect_counts {
+    atomic_size_t positions;       // a surface by its depth, but P is NaN, infinite or far off its pixel
+    atomic_size_t normals;         // a surface whose N is zero, NaN, infinite or absurdly long
+    atomic_size_t colours;         // a sample of a colour layer that is NaN or infinite
+    size_t colour_samples;         // of how many
+    atomic_size_t negative_albedo; // samples below 0
+} defect_counts;
+
 typedef struct build {
     const exrio_file *file;
     const resolution *r;
@@ -50,43 +103,14 @@ typedef struct build {
     log_t *log;
     error *e;
 
-    plane position[3], normal[3], depth, alpha;
-    depth_code depth_code;
-    bool has_position, has_normal, has_depth; // present and believed
-    uint8_t *surface;                         // a `surface` per pixel
-    float *raw;                               // depth as P (or Z) says, before it is moved onto the pixel's ray; 0 none
-
-    camera_point *points; // a sample of the surfaces, spread over the frame, with their Z (NaN without)
-    double *point_depth;
-    size_t point_count;
-    size_t candidates; // surface pixels found by classification
-
-    bool has_pose;         // camera->world_from_camera takes P's space to camera space
-    bool depth_measured;   // Z is known to be planar or radial depth
-    bool depth_wins;       // z comes from Z
-    double depth_offset;   // orthographic: z = Z + offset
-    double far_pixels;     // a P further than this from its pixel is not believed
-    unsigned filtered;     // bits of the roles whose pixels are means over the pixel (damage.c)
-    bool lateral;          // P is fine enough to tell where in its pixel it was sampled
-    double depth_rounding; // of raw, in scene units, and the depth it is meant at: medians
-    double typical_depth;
-
-    bool has_rotation;    // the camera's world_from_camera is that of a flag or of the positions
-    bool has_header_pose; // else: world_from_camera is the header's, not confirmed yet
-    header_pose pose;
-    bool rotation_from_normals; // else: the normals gave the camera's rotation; its place is unknown
-    mat3 world_from_camera;     // has_header_pose or rotation_from_normals: the camera's in the end
-    vec3 eye;
-    mat3 normal_to_camera; // takes the file's normals to camera space
-    normal_encoding normal_encoding;
-    double longest_normal; // as stored; longer ones are damaged
-
-    // What could not be used (defects.c): counted by rows on several threads.
-    atomic_size_t bad_positions;   // a surface by its depth, but P is NaN, infinite or far off its pixel
-    atomic_size_t bad_normals;     // a surface whose N is zero, NaN, infinite or absurdly long
-    atomic_size_t bad_colours;     // a sample of a colour layer that is NaN or infinite
-    size_t colour_samples;         // of how many
-    atomic_size_t negative_albedo; // samples below 0
+    plane alpha;
+    uint8_t *surface;  // a `surface` per pixel
+    unsigned filtered; // bits of the roles whose pixels are means over the pixel (damage.c)
+    position_evidence position;
+    camera_evidence camera;
+    normal_evidence normal;
+    surface_sample sample;
+    defect_counts defects;
 } build;
 
 // The channel of a role's component, data NULL when it is absent or was not loaded.
@@ -103,13 +127,13 @@ static inline size_t build_index(const build *b, int x, int y) { return (size_t)
 
 static inline vec3 build_position(const build *b, int x, int y)
 {
-    return v3(plane_get(&b->position[0], x, y), plane_get(&b->position[1], x, y), plane_get(&b->position[2], x, y));
+    return v3(plane_get(&b->position.p[0], x, y), plane_get(&b->position.p[1], x, y), plane_get(&b->position.p[2], x, y));
 }
 
 // Z decoded to planar distance, or radial where its kind is that; NaN where it holds none.
 static inline double build_depth(const build *b, int x, int y)
 {
-    return depth_decode(&b->depth_code, plane_get(&b->depth, x, y));
+    return depth_decode(&b->position.code, plane_get(&b->position.z, x, y));
 }
 
 // Direction with z = 1 (perspective) through the centre of the pixel; orthographic: (0, 0, 1).

@@ -81,8 +81,9 @@ static bool convert_row(void *context, size_t row, int worker)
 static bool convert(build *b, job *j, float **out)
 {
     j->width = b->g->width;
-    j->bad = &b->bad_colours;
-    for (int c = 0; c < j->components; c++) b->colour_samples += j->from[c].data ? (size_t)b->g->width * (size_t)b->g->height : 0;
+    j->bad = &b->defects.colours;
+    for (int c = 0; c < j->components; c++)
+        b->defects.colour_samples += j->from[c].data ? (size_t)b->g->width * (size_t)b->g->height : 0;
     j->to = *out = mem_pixels((size_t)b->g->width * (size_t)b->g->height * (size_t)j->components, sizeof **out, b->e);
     return *out && threads_for(b->options->threads, (size_t)b->g->height, convert_row, j);
 }
@@ -91,7 +92,7 @@ static bool colour(build *b, unsigned need, role r, float **out)
 {
     if (!(b->options->need & need) || b->r->components[r] == 0) return true;
     job j = {.components = 4, .low = -most, .high = most};
-    if (r == ROLE_ALBEDO) j.low = 0.0f, j.negative = &b->negative_albedo; // no surface reflects less than nothing
+    if (r == ROLE_ALBEDO) j.low = 0.0f, j.negative = &b->defects.negative_albedo; // no surface reflects less than nothing
     for (int c = 0; c < 3; c++) j.from[c] = build_plane(b, r, c);
     if (r == ROLE_BEAUTY) j.from[3] = build_plane(b, ROLE_ALPHA, 0), j.fill[3] = 1.0f;
     return convert(b, &j, out);

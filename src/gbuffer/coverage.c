@@ -65,7 +65,7 @@ static void coverage_row(build *b, int y)
             double stored = k;
             if (b->alpha.data)
                 stored = plane_get(&b->alpha, x, y);
-            else if (b->has_normal && b->row->normals_averaged && b->normal_encoding == NORMAL_SIGNED)
+            else if (b->normal.there && b->row->normals_averaged && b->normal.encoding == NORMAL_SIGNED)
                 stored = fmax(normals_length(b, x, y), b->g->albedo ? coverage_of_albedo(b, x, y) : 0.0);
             if (isfinite(stored)) k = fmin(fmax(stored, 0.0), 1.0);
         }
@@ -84,7 +84,7 @@ bool coverage_make(build *b)
     b->g->coverage = mem_pixels((size_t)b->g->width * (size_t)b->g->height, sizeof *b->g->coverage, b->e);
     if (!b->g->coverage) return false;
     if (b->alpha.data && !alpha_varies(b)) b->alpha.data = NULL;
-    bool from_normals = !b->alpha.data && b->has_normal && b->row->normals_averaged && b->normal_encoding == NORMAL_SIGNED;
+    bool from_normals = !b->alpha.data && b->normal.there && b->row->normals_averaged && b->normal.encoding == NORMAL_SIGNED;
     build_note(b, "coverage at edges: from %s",
                b->alpha.data  ? "alpha"
                : from_normals ? "the length of the normals and the albedo"

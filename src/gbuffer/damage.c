@@ -53,8 +53,8 @@ typedef struct look {
 
 static vec3 stored_normal(const build *b, int x, int y)
 {
-    vec3 n = v3(plane_get(&b->normal[0], x, y), plane_get(&b->normal[1], x, y), plane_get(&b->normal[2], x, y));
-    n = encoding_decode(b->normal_encoding, n);
+    vec3 n = v3(plane_get(&b->normal.n[0], x, y), plane_get(&b->normal.n[1], x, y), plane_get(&b->normal.n[2], x, y));
+    n = encoding_decode(b->normal.encoding, n);
     return v3_finite(n) ? n : v3(0, 0, 0);
 }
 
@@ -62,10 +62,10 @@ static void look_at_row(const build *b, int y, look *l)
 {
     int w = b->g->width;
     for (int x = 0; x < w; x++) {
-        bool there = b->raw[build_index(b, x, y)] > 0.0f;
-        l->z[0][x] = there && b->has_position ? camera_from_world(&b->g->camera, build_position(b, x, y)).z : 0.0;
-        l->z[1][x] = there && b->has_depth && b->depth_measured ? build_depth(b, x, y) : 0.0;
-        l->n[x] = there && b->has_normal ? stored_normal(b, x, y) : v3(0, 0, 0);
+        bool there = b->position.raw[build_index(b, x, y)] > 0.0f;
+        l->z[0][x] = there && b->position.has_p ? camera_from_world(&b->g->camera, build_position(b, x, y)).z : 0.0;
+        l->z[1][x] = there && b->position.has_z && b->position.z_measured ? build_depth(b, x, y) : 0.0;
+        l->n[x] = there && b->normal.there ? stored_normal(b, x, y) : v3(0, 0, 0);
     }
     for (int r = 0; r < REACHES; r++) {
         count_depth(l->z[0], w, r + 1, &l->position[r]);
@@ -120,8 +120,8 @@ static bool lossy_name(const char *channel)
 static double damaged_share(const build *b, role r)
 {
     size_t bad = 0;
-    for (size_t i = 0; i < b->point_count; i++) {
-        const camera_point *p = &b->points[i];
+    for (size_t i = 0; i < b->sample.count; i++) {
+        const camera_point *p = &b->sample.points[i];
         double x, y;
         if (r == ROLE_NORMAL)
             bad += fabs(v3_length(stored_normal(b, (int)p->x, (int)p->y)) - 1.0) > worst_length;
@@ -129,7 +129,7 @@ static double damaged_share(const build *b, role r)
             bad += !camera_project(&b->g->camera, camera_from_world(&b->g->camera, p->world), &x, &y) ||
                    hypot(x - p->x, y - p->y) > 0.1;
     }
-    return b->point_count ? (double)bad / (double)b->point_count : 0.0;
+    return b->sample.count ? (double)bad / (double)b->sample.count : 0.0;
 }
 
 // What a lossy compression does to data, and which channels it does it to.
@@ -174,7 +174,7 @@ static void warn_loss(build *b, role r)
             used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", c->name);
     }
     if (!found) return;
-    bool can_measure = r != ROLE_DEPTH && (r != ROLE_POSITION || b->has_pose);
+    bool can_measure = r != ROLE_DEPTH && (r != ROLE_POSITION || b->camera.has_pose);
     double share = can_measure ? damaged_share(b, r) : 0.0;
     if (found->measured && share < worth_a_word) return;
     if (can_measure) snprintf(measured, sizeof measured, "; %.0f %% of the pixels show it", 100.0 * share);

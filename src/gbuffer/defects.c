@@ -10,16 +10,16 @@ static void warn_of(build *b, const char *key, size_t bad, size_t of, const char
 void defects_warn(build *b)
 {
     size_t pixels = (size_t)b->g->width * (size_t)b->g->height;
-    warn_of(b, "bad-positions", atomic_load(&b->bad_positions), pixels,
+    warn_of(b, "bad-positions", atomic_load(&b->defects.positions), pixels,
             "the pixels have a position that is NaN, infinite or far off its pixel; they count by their depth if that is "
             "known, else as empty (--position names another channel)");
-    warn_of(b, "bad-normals", atomic_load(&b->bad_normals), pixels,
+    warn_of(b, "bad-normals", atomic_load(&b->defects.normals), pixels,
             "the pixels have a surface but no usable normal (zero, NaN, infinite or a thousand times too long); it is rebuilt "
             "from depth there "
             "(--normal names another channel)");
-    warn_of(b, "bad-colours", atomic_load(&b->bad_colours), b->colour_samples,
+    warn_of(b, "bad-colours", atomic_load(&b->defects.colours), b->defects.colour_samples,
             "the colour samples are NaN or infinite; they count as black or as the largest value there is (--albedo, "
             "--beauty name other channels)");
-    warn_of(b, "negative-albedo", atomic_load(&b->negative_albedo), 3 * pixels,
+    warn_of(b, "negative-albedo", atomic_load(&b->defects.negative_albedo), 3 * pixels,
             "the albedo's samples are negative; they count as black (--albedo names another channel)");
 }

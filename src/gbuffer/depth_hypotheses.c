@@ -31,7 +31,7 @@ typedef struct values {
 
 static bool background(const build *b, double v)
 {
-    return !isfinite(v) || fabs(v) >= b->r->background_depth || (b->depth.type == SAMPLE_HALF && fabs(v) >= 65504.0);
+    return !isfinite(v) || fabs(v) >= b->r->background_depth || (b->position.z.type == SAMPLE_HALF && fabs(v) >= 65504.0);
 }
 
 static values look(const build *b)
@@ -40,7 +40,7 @@ static values look(const build *b)
     size_t ringing = 0, below = 0;
     size_t pixels = (size_t)b->g->width * (size_t)b->g->height, stride = pixels / LOOKED_AT + 1;
     for (size_t i = 0; i < pixels; i += stride) {
-        double v = plane_get(&b->depth, (int)(i % (size_t)b->g->width), (int)(i / (size_t)b->g->width));
+        double v = plane_get(&b->position.z, (int)(i % (size_t)b->g->width), (int)(i / (size_t)b->g->width));
         if (background(b, v)) continue;
         s.looked_at++, s.negative += v < 0.0, s.zero += v == 0.0, s.one += v == 1.0;
         s.within += v > 0.0 && 1.0 > v, s.beyond += v > 1.0;
@@ -78,8 +78,8 @@ static bool no_range(build *b, const char *what)
 
 bool depth_open(build *b)
 {
-    depth_code *c = &b->depth_code;
-    if (!b->has_depth) return true;
+    depth_code *c = &b->position.code;
+    if (!b->position.has_z) return true;
     b->g->depth_kind = b->r->depth == DEPTH_RADIAL ? DEPTH_RADIAL : DEPTH_PLANAR;
     values s = look(b);
     if (10 * s.negative > 9 * (s.looked_at - s.zero)) c->sign = s.looked_at > s.zero ? -1.0 : 1.0;
@@ -94,8 +94,8 @@ bool depth_open(build *b)
 // Planar distance at a pixel as the code has it, 0 where there is none.
 static double distance(const build *b, const depth_code *c, int x, int y)
 {
-    if (!plane_holds(&b->depth, x, y)) return 0.0;
-    double v = plane_get(&b->depth, x, y), z = background(b, v) ? 0.0 : depth_decode(c, v);
+    if (!plane_holds(&b->position.z, x, y)) return 0.0;
+    double v = plane_get(&b->position.z, x, y), z = background(b, v) ? 0.0 : depth_decode(c, v);
     if (c->kind == DEPTH_RADIAL && b->g->camera.kind == CAMERA_PERSPECTIVE) z /= v3_length(build_ray(&b->g->camera, x, y));
     return z > 0.0 && isfinite(z) ? z : 0.0;
 }
@@ -123,7 +123,7 @@ static bool ask_normals(build *b, trial *t, evidence *v)
 // Along one axis: 1 a line, 0 a curve, -1 too level to tell.
 static int straight(const build *b, const depth_code *c, int x, int y, int dx, int dy)
 {
-    double z[3], rounding = b->depth.type == SAMPLE_HALF ? 0x1p-11 : 0x1p-24;
+    double z[3], rounding = b->position.z.type == SAMPLE_HALF ? 0x1p-11 : 0x1p-24;
     for (int k = 0; k < 3; k++) {
         int u = x + (k - 1) * dx, v = y + (k - 1) * dy;
         z[k] = u >= 0 && v >= 0 && u < b->g->width && v < b->g->height ? distance(b, c, u, v) : 0.0;
@@ -138,9 +138,9 @@ static int straight(const build *b, const depth_code *c, int x, int y, int dx, i
 static void ask_planes(const build *b, trial *t)
 {
     int shorter = b->g->width < b->g->height ? b->g->width : b->g->height, step = shorter / 40 > 2 ? shorter / 40 : 2;
-    size_t stride = b->point_count / SAMPLES + 1, flat = 0, all = 0;
-    for (size_t i = 0; i < b->point_count; i += stride) {
-        int x = (int)b->points[i].x, y = (int)b->points[i].y;
+    size_t stride = b->sample.count / SAMPLES + 1, flat = 0, all = 0;
+    for (size_t i = 0; i < b->sample.count; i += stride) {
+        int x = (int)b->sample.points[i].x, y = (int)b->sample.points[i].y;
         int across = straight(b, &t->code, x, y, step, 0), down = straight(b, &t->code, x, y, 0, step);
         all++;
         flat += across && down && (across > 0 || down > 0);
@@ -150,7 +150,7 @@ static void ask_planes(const build *b, trial *t)
 
 static int list_trials(const build *b, const values *s, trial list[MOST], bool *range)
 {
-    const depth_code own = {.kind = b->g->depth_kind, .sign = b->depth_code.sign};
+    const depth_code own = {.kind = b->g->depth_kind, .sign = b->position.code.sign};
     double near, far;
     int n = 0;
     list[n++].code = own;
@@ -253,8 +253,8 @@ bool depth_settle(build *b)
 {
     gbuffer *g = b->g;
     verdict *v = &g->depth_verdict;
-    v->present = b->has_depth, v->fit = v->next = (double)NAN;
-    if (b->has_position || !b->has_depth || b->point_count == 0) return true;
+    v->present = b->position.has_z, v->fit = v->next = (double)NAN;
+    if (b->position.has_p || !b->position.has_z || b->sample.count == 0) return true;
     if (b->r->depth_told) {
         snprintf(v->reading, sizeof v->reading, "%s, as told", depth_text(b->r->depth));
         return true;
@@ -266,7 +266,7 @@ bool depth_settle(build *b)
     evidence *scratch = mem_zero(1, sizeof *scratch, b->e);
     bool ok = scratch != NULL;
     for (int i = 0; ok && i < n; i++) {
-        if (b->has_normal) ok = ask_normals(b, &list[i], scratch);
+        if (b->normal.there) ok = ask_normals(b, &list[i], scratch);
         ask_planes(b, &list[i]);
     }
     free(scratch);
@@ -280,6 +280,6 @@ bool depth_settle(build *b)
         return true;
     }
     g->depth_kind = DEPTH_PLANAR;
-    b->depth_code = list[best].code;
+    b->position.code = list[best].code;
     return validity_find(b);
 }

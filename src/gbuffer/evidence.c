@@ -66,19 +66,20 @@ static void weigh(evidence *v)
 
 static void add(const build *b, evidence *v, int x, int y, vec3 n)
 {
-    v->stored[v->count] = v3(plane_get(&b->normal[0], x, y), plane_get(&b->normal[1], x, y), plane_get(&b->normal[2], x, y));
+    v->stored[v->count] =
+        v3(plane_get(&b->normal.n[0], x, y), plane_get(&b->normal.n[1], x, y), plane_get(&b->normal.n[2], x, y));
     v->surface[v->count++] = n;
 }
 
 void evidence_gather(const build *b, evidence_point point, const void *context, int step, size_t most, evidence *v)
 {
-    size_t stride = b->point_count / most + 1;
+    size_t stride = b->sample.count / most + 1;
     v->count = 0;
     // In a picture of a few pixels or of leaves alone nothing may be smooth at the wanted step.
     for (; step >= 1 && LEAST > v->count; step = step > 1 ? 1 : 0) {
         v->count = 0;
-        for (size_t i = 0; i < b->point_count && v->count < most; i += stride) {
-            int x = (int)b->points[i].x, y = (int)b->points[i].y;
+        for (size_t i = 0; i < b->sample.count && v->count < most; i += stride) {
+            int x = (int)b->sample.points[i].x, y = (int)b->sample.points[i].y;
             vec3 n;
             if (smooth_normal(b, point, context, step, x, y, &n)) add(b, v, x, y, n);
         }

@@ -44,14 +44,14 @@ static double per_depth(const repair *r, int x, int y) { return r->radial ? v3_l
 // The values of a surface at planar depth z on the ray of (x, y).
 static vec3 value_at(const repair *r, int x, int y, double z)
 {
-    if (r->b->has_position) return build_point(&r->b->g->camera, x, y, z);
+    if (r->b->position.has_p) return build_point(&r->b->g->camera, x, y, z);
     return v3(0, 0, r->inverse ? 1.0 / z : z * per_depth(r, x, y));
 }
 
 // And back; 0 where there is none.
 static double depth_of(const repair *r, vec3 p, int x, int y)
 {
-    if (r->b->has_position) return p.z;
+    if (r->b->position.has_p) return p.z;
     if (r->inverse) return p.z > 0.0 ? 1.0 / p.z : 0.0;
     return p.z / per_depth(r, x, y);
 }
@@ -61,7 +61,7 @@ static stored read_pixel(const repair *r, int x, int y)
     const build *b = r->b;
     stored s = r->nothing;
     double alpha = plane_get(&b->alpha, x, y);
-    if (b->has_position) {
+    if (b->position.has_p) {
         vec3 p = camera_from_world(&b->g->camera, build_position(b, x, y));
         if (v3_finite(p)) s.p = p;
     } else {
@@ -78,7 +78,7 @@ static stored read_pixel(const repair *r, int x, int y)
 static vec3 place_of(const repair *r, int x, int y)
 {
     const stored *s = &r->pixels[build_index(r->b, x, y)];
-    return r->b->has_position ? s->p : build_point(&r->b->g->camera, x, y, depth_of(r, s->p, x, y));
+    return r->b->position.has_p ? s->p : build_point(&r->b->g->camera, x, y, depth_of(r, s->p, x, y));
 }
 
 // Whether the pixel and its neighbour lie on one smooth surface. With normals: the line between them is perpendicular to the mean
@@ -177,7 +177,7 @@ typedef struct values {
 
 static values values_of(const repair *r, double scale, vec3 p, vec3 code, double alpha)
 {
-    double weight = r->b->alpha.data ? 2.0 : 0.0, unit = r->b->normal_encoding == NORMAL_SIGNED ? 1.0 : 2.0;
+    double weight = r->b->alpha.data ? 2.0 : 0.0, unit = r->b->normal.encoding == NORMAL_SIGNED ? 1.0 : 2.0;
     return (values){{p.x / scale, p.y / scale, p.z / scale, unit * code.x, unit * code.y, unit * code.z, weight * alpha}};
 }
 
@@ -201,7 +201,7 @@ static double share_by_length(const repair *r, const stored *s, const side *far)
     if (!(root >= 0.0 && b + sqrt(root) > 0.2)) return (double)NAN;
     double share = -c / (b + sqrt(root));
     const double step = 1e-3;
-    for (int k = 0; k < 4 && r->b->normal_encoding > NORMAL_UNORM && share > -0.4 && share < 0.9; k++) {
+    for (int k = 0; k < 4 && r->b->normal.encoding > NORMAL_UNORM && share > -0.4 && share < 0.9; k++) {
         double off = v3_length(without(r, s, far, share)) - 1.0;
         share -= off * step / (v3_length(without(r, s, far, share + step)) - 1.0 - off);
     }
@@ -339,7 +339,7 @@ static void mend(repair *r, int x, int y)
     mixture m = best_mixture(r, s, list, count);
     if (!(m.rest <= most_rest)) return; // more than two surfaces, or a detail that no clean pixel shows
     settle(r, s, &m, x, y, &z, &n);
-    b->raw[i] = (float)z; // read when all are done
+    b->position.raw[i] = (float)z; // read when all are done
     b->surface[i] = 1;
     s->mended = n;
 }
@@ -350,7 +350,7 @@ static void learn_nothing(repair *r)
     const build *b = r->b;
     for (int y = 0; y < b->g->height; y++)
         for (int x = 0; x < b->g->width; x++) {
-            vec3 p = b->has_position ? build_position(b, x, y) : v3(0, 0, 0);
+            vec3 p = b->position.has_p ? build_position(b, x, y) : v3(0, 0, 0);
             double alpha = plane_get(&b->alpha, x, y);
             if (b->g->depth[build_index(b, x, y)] > 0.0f || v3_dot(p, p) != 0.0 || alpha > 0.0) continue;
             r->nothing.code = normals_code(b, x, y);
@@ -362,11 +362,11 @@ static void learn_nothing(repair *r)
 static bool lengths_are_whole(const repair *r)
 {
     size_t whole = 0, all = 0;
-    for (size_t i = 0; i < r->b->point_count; i++) {
-        double length = v3_length(r->pixels[build_index(r->b, (int)r->b->points[i].x, (int)r->b->points[i].y)].n);
+    for (size_t i = 0; i < r->b->sample.count; i++) {
+        double length = v3_length(r->pixels[build_index(r->b, (int)r->b->sample.points[i].x, (int)r->b->sample.points[i].y)].n);
         all++, whole += fabs(length - 1.0) <= odd_length;
     }
-    return r->b->has_normal && 2 * whole > all;
+    return r->b->normal.there && 2 * whole > all;
 }
 
 static void mend_all(repair *r)
@@ -385,32 +385,32 @@ static void mend_all(repair *r)
     b->g->valid = 0;
     for (size_t i = 0; i < total; i++) {
         if (b->surface[i]) {
-            b->g->depth[i] = b->raw[i];
-            const vec3 n = b->raw[i] > 0.0f ? v3_normalize(r->pixels[i].mended) : v3(0, 0, 0);
+            b->g->depth[i] = b->position.raw[i];
+            const vec3 n = b->position.raw[i] > 0.0f ? v3_normalize(r->pixels[i].mended) : v3(0, 0, 0);
             b->g->normal[4 * i] = (float)n.x, b->g->normal[4 * i + 1] = (float)n.y, b->g->normal[4 * i + 2] = (float)n.z;
             mended++;
         }
         b->g->valid += b->g->depth[i] > 0.0f;
     }
-    if (!b->has_normal) normals_make(b); // of the mended depths
-    atomic_store(&b->bad_positions, 0);  // they are among the mended
+    if (!b->normal.there) normals_make(b);  // of the mended depths
+    atomic_store(&b->defects.positions, 0); // they are among the mended
     build_note(b, "%zu pixels of filtered passes lie between surfaces and were given to the nearest one", mended);
 }
 
 bool filtered_mend(build *b)
 {
-    role depth = b->has_position && !b->depth_wins ? ROLE_POSITION : ROLE_DEPTH;
+    role depth = b->position.has_p && !b->position.z_wins ? ROLE_POSITION : ROLE_DEPTH;
     if (!(b->filtered & 1u << depth)) return true;
     size_t total = (size_t)b->g->width * (size_t)b->g->height;
     repair r = {.b = b, .pixels = mem_pixels(total, sizeof *r.pixels, b->e)};
     if (!r.pixels) return false;
-    const depth_kind k = b->depth_code.kind;
-    r.inverse = !b->has_position && (k == DEPTH_INVERSE || k == DEPTH_ZBUFFER || k == DEPTH_REVERSED);
-    r.radial = !b->has_position && b->g->depth_kind == DEPTH_RADIAL && b->g->camera.kind == CAMERA_PERSPECTIVE;
-    if (b->has_position)
+    const depth_kind k = b->position.code.kind;
+    r.inverse = !b->position.has_p && (k == DEPTH_INVERSE || k == DEPTH_ZBUFFER || k == DEPTH_REVERSED);
+    r.radial = !b->position.has_p && b->g->depth_kind == DEPTH_RADIAL && b->g->camera.kind == CAMERA_PERSPECTIVE;
+    if (b->position.has_p)
         r.nothing.p = camera_from_world(&b->g->camera, v3(0, 0, 0));
     else if (depth_needs_range(k))
-        r.nothing.p.z = r.inverse ? 1.0 / b->depth_code.far : b->depth_code.far;
+        r.nothing.p.z = r.inverse ? 1.0 / b->position.code.far : b->position.code.far;
     learn_nothing(&r);
     for (int y = 0; y < b->g->height; y++)
         for (int x = 0; x < b->g->width; x++) r.pixels[build_index(b, x, y)] = read_pixel(&r, x, y);

@@ -170,7 +170,7 @@ static bool estimate(const search *s, normal_encoding e, double determinant, mat
 }
 
 static mat3 known_rotation(const build *b) { return m3_transpose(b->g->camera.world_from_camera); }
-static mat3 header_rotation(const build *b) { return m3_transpose(m3_mul(b->pose.axes, b->pose.from_ours)); }
+static mat3 header_rotation(const build *b) { return m3_transpose(m3_mul(b->camera.header.axes, b->camera.header.from_ours)); }
 
 // The named readings of one encoding.
 static void offer_named(search *s, normal_encoding e)
@@ -183,11 +183,11 @@ static void offer_named(search *s, normal_encoding e)
     bool world = s->space != SPACE_CAMERA, eye = s->space != SPACE_WORLD;
     for (int side = 0; side < 2; side++) {
         reading r = {.encoding = e, .turned = side ? inwards : none};
-        if (b->has_rotation && (known_is_camera ? eye : world)) {
+        if (b->camera.has_rotation && (known_is_camera ? eye : world)) {
             r.source = FROM_KNOWN, r.to_camera = m3_mul(r.turned, known_rotation(b));
             offer(s, r, side ? KIND_TURNED : k);
         }
-        if (b->has_header_pose && world) {
+        if (b->camera.has_header_pose && world) {
             r.source = FROM_HEADER, r.to_camera = m3_mul(r.turned, header_rotation(b));
             offer(s, r, side ? KIND_TURNED : k);
         }
@@ -197,10 +197,10 @@ static void offer_named(search *s, normal_encoding e)
             offer(s, r, side ? KIND_TURNED : k);
         }
     }
-    if (b->has_rotation && (known_is_camera ? eye : world)) offer_turned(s, e, FROM_KNOWN, known_rotation(b), true, false);
-    if (b->has_header_pose && world) {
-        offer_turned(s, e, FROM_HEADER, m3_transpose(b->pose.axes), false, false);
-        offer_turned(s, e, FROM_HEADER, b->pose.axes, false, true);
+    if (b->camera.has_rotation && (known_is_camera ? eye : world)) offer_turned(s, e, FROM_KNOWN, known_rotation(b), true, false);
+    if (b->camera.has_header_pose && world) {
+        offer_turned(s, e, FROM_HEADER, m3_transpose(b->camera.header.axes), false, false);
+        offer_turned(s, e, FROM_HEADER, b->camera.header.axes, false, true);
     }
     if (eye) offer_turned(s, e, FROM_CAMERA, m3_identity(), false, false);
 }
@@ -221,10 +221,10 @@ static void offer_own(search *s)
     reading r = {.encoding = s->encoding != NORMAL_AUTO ? s->encoding : b->row->normal_encoding, .turned = m3_identity()};
     if (!s->decoded[r.encoding].there) r.encoding = NORMAL_SIGNED;
     if (!s->decoded[r.encoding].there) return;
-    bool known_serves = b->has_rotation && (!b->g->position_is_camera_space || s->space != SPACE_WORLD);
+    bool known_serves = b->camera.has_rotation && (!b->g->position_is_camera_space || s->space != SPACE_WORLD);
     if (world && known_serves)
         r.source = FROM_KNOWN, r.to_camera = known_rotation(b);
-    else if (world && b->has_header_pose)
+    else if (world && b->camera.has_header_pose)
         r.source = FROM_HEADER, r.to_camera = header_rotation(b);
     else if (s->space == SPACE_WORLD)
         return; // a world that only the normals know

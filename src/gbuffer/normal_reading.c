@@ -58,9 +58,9 @@ void reading_describe(const build *b, const reading *r, char *buf, size_t size)
 static bool surface_point(const build *b, const void *context, int x, int y, vec3 *p)
 {
     (void)context;
-    double z = (double)b->raw[build_index(b, x, y)];
+    double z = (double)b->position.raw[build_index(b, x, y)];
     if (!(z > 0.0)) return false;
-    bool whole = b->has_position && b->lateral && !b->depth_wins;
+    bool whole = b->position.has_p && b->position.lateral && !b->position.z_wins;
     *p = whole ? camera_from_world(&b->g->camera, build_position(b, x, y)) : build_point(&b->g->camera, x, y, z);
     return true;
 }
@@ -93,20 +93,21 @@ static void take_pose(build *b, const reading *r, bool believed)
     mat3 outwards = r->to_camera;
     if (memcmp(&r->turned, &(mat3){{{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}}, sizeof outwards) == 0)
         for (int i = 0; i < 9; i++) outwards.m[i / 3][i % 3] *= -1.0;
-    if (b->has_header_pose) {
-        b->world_from_camera = by_header ? m3_transpose(outwards) : m3_mul(b->pose.axes, b->pose.from_ours);
-        b->eye = by_header && r->inverse ? b->pose.inverse_eye : b->pose.eye;
+    if (b->camera.has_header_pose) {
+        b->camera.world_from_camera =
+            by_header ? m3_transpose(outwards) : m3_mul(b->camera.header.axes, b->camera.header.from_ours);
+        b->camera.eye = by_header && r->inverse ? b->camera.header.inverse_eye : b->camera.header.eye;
         build_note(b, "the camera's place in the world is the header's%s", by_header ? ", and the normals agree" : ", unchecked");
         return;
     }
-    bool knows_world = b->has_rotation && !b->g->position_is_camera_space;
+    bool knows_world = b->camera.has_rotation && !b->g->position_is_camera_space;
     if (!by_normals || knows_world) return;
     double degrees;
     rotation_nearest_axes(r->to_camera, &degrees);
-    b->rotation_from_normals = degrees > 1.0 || b->options->normal_space == SPACE_WORLD;
-    b->world_from_camera = m3_transpose(r->to_camera);
+    b->camera.rotation_from_normals = degrees > 1.0 || b->options->normal_space == SPACE_WORLD;
+    b->camera.world_from_camera = m3_transpose(r->to_camera);
     build_note(
-        b, b->rotation_from_normals
+        b, b->camera.rotation_from_normals
                ? "the camera's rotation is that which takes the normals to the surfaces; which axis is up is assumed (--env-up)"
                : "the normals are turned by a signed order of the axes: camera or world space (--normal-space says)");
 }
@@ -131,7 +132,7 @@ static void refuse(build *b, const normal_choice *c, verdict *out)
                  : "the normals do not fit the surfaces in any reading (median cosine %.2f at best); they are rebuilt from "
                    "depth (--normal names another layer, --normal-space and --normal-encoding say how to read this one)",
              c->best.fit);
-    b->has_normal = false;
+    b->normal.there = false;
 }
 
 bool measure_normals(build *b)
@@ -140,17 +141,18 @@ bool measure_normals(build *b)
     normal_choice c = {.best = {.to_camera = m3_identity()}};
     bool done = true, believed = false;
     evidence *v = NULL;
-    out->present = b->has_normal, out->fit = out->next = (double)NAN;
-    if (!b->has_normal || b->point_count == 0) goto out;
+    out->present = b->normal.there, out->fit = out->next = (double)NAN;
+    if (!b->normal.there || b->sample.count == 0) goto out;
     v = mem_zero(1, sizeof *v, b->e);
     done = v != NULL;
     if (!done) goto out;
-    evidence_gather(b, surface_point, NULL, evidence_step(b, b->depth_rounding, b->typical_depth), EVIDENCE_SAMPLES, v);
+    evidence_gather(b, surface_point, NULL, evidence_step(b, b->position.rounding, b->position.typical_depth), EVIDENCE_SAMPLES,
+                    v);
     drop_unusable(v);
-    b->longest_normal = v->count ? longest(v) : INFINITY;
+    b->normal.longest = v->count ? longest(v) : INFINITY;
     done = normals_choose(b, v, out, &c);
     if (!done) goto out;
-    b->normal_to_camera = c.best.to_camera, b->normal_encoding = c.best.encoding;
+    b->normal.to_camera = c.best.to_camera, b->normal.encoding = c.best.encoding;
     bool told = b->options->normal_space != SPACE_UNKNOWN && b->options->encoding_told;
     believed = normals_believed(&c, v);
     tell(b, &c, out);
@@ -164,7 +166,7 @@ bool measure_normals(build *b)
     }
 out:
     if (done) take_pose(b, &c.best, believed);
-    out->used = b->has_normal;
+    out->used = b->normal.there;
     free(v);
     return done;
 }

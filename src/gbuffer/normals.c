@@ -9,33 +9,33 @@ static const double opposite = -0.5;
 
 static vec3 stored(const build *b, int x, int y)
 {
-    return v3(plane_get(&b->normal[0], x, y), plane_get(&b->normal[1], x, y), plane_get(&b->normal[2], x, y));
+    return v3(plane_get(&b->normal.n[0], x, y), plane_get(&b->normal.n[1], x, y), plane_get(&b->normal.n[2], x, y));
 }
 
 double normals_length(const build *b, int x, int y)
 {
-    vec3 n = b->has_normal && b->normal_encoding == NORMAL_SIGNED ? stored(b, x, y) : v3(0, 0, 0);
+    vec3 n = b->normal.there && b->normal.encoding == NORMAL_SIGNED ? stored(b, x, y) : v3(0, 0, 0);
     return v3_finite(n) ? v3_length(n) : 0.0;
 }
 
 vec3 normals_code(const build *b, int x, int y)
 {
-    vec3 v = b->has_normal ? stored(b, x, y) : v3(0, 0, 0);
+    vec3 v = b->normal.there ? stored(b, x, y) : v3(0, 0, 0);
     return v3_finite(v) ? v : v3(0, 0, 0);
 }
 
 vec3 normals_decode(const build *b, vec3 code)
 {
-    return b->has_normal ? m3_apply(b->normal_to_camera, encoding_decode(b->normal_encoding, code)) : v3(0, 0, 0);
+    return b->normal.there ? m3_apply(b->normal.to_camera, encoding_decode(b->normal.encoding, code)) : v3(0, 0, 0);
 }
 
 bool normals_read(const build *b, int x, int y, vec3 *n)
 {
-    if (!b->has_normal) return false;
+    if (!b->normal.there) return false;
     vec3 v = stored(b, x, y);
-    if (v3_length(v) > b->longest_normal) return false;
-    v = encoding_decode(b->normal_encoding, v);
-    *n = v3_normalize(m3_apply(b->normal_to_camera, v));
+    if (v3_length(v) > b->normal.longest) return false;
+    v = encoding_decode(b->normal.encoding, v);
+    *n = v3_normalize(m3_apply(b->normal.to_camera, v));
     return v3_dot(*n, *n) > 0.5;
 }
 
@@ -88,7 +88,7 @@ static vec3 normal_of(build *b, int x, int y)
 {
     vec3 n;
     if (!normals_read(b, x, y, &n)) {
-        if (b->has_normal) atomic_fetch_add(&b->bad_normals, 1);
+        if (b->normal.there) atomic_fetch_add(&b->defects.normals, 1);
         return normals_from_depth(b, b->g->depth, x, y);
     }
     vec3 ray = v3_normalize(build_ray(&b->g->camera, x, y));
@@ -111,5 +111,5 @@ static void make_row(build *b, int y)
 void normals_make(build *b)
 {
     build_rows(b, make_row);
-    b->g->normals_from_depth = !b->has_normal;
+    b->g->normals_from_depth = !b->normal.there;
 }

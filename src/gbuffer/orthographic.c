@@ -56,8 +56,8 @@ static int side_of_origin(const build *b)
     vec3 origin = camera_from_world(c, v3(0, 0, 0));
     if (!b->g->position_is_camera_space || !camera_project(c, v3(origin.x, origin.y, 1.0), &x, &y)) return 0;
     if (fabs(x - 0.5 * b->g->width) > 0.5 || fabs(y - 0.5 * b->g->height) > 0.5) return 0;
-    for (size_t i = 0; i < b->point_count; i++) {
-        double z = camera_from_world(c, b->points[i].world).z - origin.z;
+    for (size_t i = 0; i < b->sample.count; i++) {
+        double z = camera_from_world(c, b->sample.points[i].world).z - origin.z;
         low = fmin(low, z), high = fmax(high, z);
     }
     if (low > 0.1 * high) return 1;
@@ -67,11 +67,11 @@ static int side_of_origin(const build *b)
 bool orthographic_settle(build *b)
 {
     camera *c = &b->g->camera;
-    if (c->kind != CAMERA_ORTHOGRAPHIC || !b->has_pose || b->has_depth || c->source != CAMERA_FROM_FIT) return true;
+    if (c->kind != CAMERA_ORTHOGRAPHIC || !b->camera.has_pose || b->position.has_z || c->source != CAMERA_FROM_FIT) return true;
     double determinant = m3_det(c->world_from_camera);
     int worse = determinant < 0.0;
     bool clear = false;
-    if (b->has_normal) {
+    if (b->normal.there) {
         evidence *v = mem_zero(1, sizeof *v, b->e);
         normal_choice as_it_is, turned;
         bool ok = v && ask(b, v, &as_it_is);

@@ -15,7 +15,7 @@ static double depth_from_channel(const build *b, int x, int y)
 {
     double z = build_depth(b, x, y);
     const camera *c = &b->g->camera;
-    if (c->kind == CAMERA_ORTHOGRAPHIC) return z + b->depth_offset;
+    if (c->kind == CAMERA_ORTHOGRAPHIC) return z + b->position.z_offset;
     return b->g->depth_kind == DEPTH_RADIAL ? z / v3_length(build_ray(c, x, y)) : z;
 }
 
@@ -23,10 +23,10 @@ static double depth_from_channel(const build *b, int x, int y)
 static vec3 sampled(const build *b, int x, int y)
 {
     vec3 p = camera_from_world(&b->g->camera, build_position(b, x, y));
-    if (!b->depth_wins) return p;
+    if (!b->position.z_wins) return p;
     const camera *c = &b->g->camera;
     double z = build_depth(b, x, y);
-    if (c->kind == CAMERA_ORTHOGRAPHIC) return v3(p.x, p.y, z + b->depth_offset);
+    if (c->kind == CAMERA_ORTHOGRAPHIC) return v3(p.x, p.y, z + b->position.z_offset);
     double length = b->g->depth_kind == DEPTH_RADIAL ? v3_length(p) : p.z;
     return v3_scale(p, z / length);
 }
@@ -42,7 +42,7 @@ static double pixels_off(const build *b, vec3 p, int x, int y)
 // P = (0,0,0) is a place like any other when the depth channel says the surface is there.
 static bool origin_is_surface(const build *b, int x, int y)
 {
-    if (!b->depth_measured || !b->has_pose) return false;
+    if (!b->position.z_measured || !b->camera.has_pose) return false;
     vec3 p = camera_from_world(&b->g->camera, v3(0, 0, 0));
     return fabs(depth_from_channel(b, x, y) - p.z) < same_depth * p.z && pixels_off(b, p, x, y) < 2.0;
 }
@@ -51,15 +51,15 @@ static void raw_row(build *b, int y)
 {
     for (int x = 0; x < b->g->width; x++) {
         size_t i = build_index(b, x, y);
-        b->raw[i] = 0.0f;
+        b->position.raw[i] = 0.0f;
         if (b->surface[i] == SURFACE_ORIGIN) b->surface[i] = origin_is_surface(b, x, y) ? SURFACE_YES : SURFACE_NONE;
         if (b->surface[i] != SURFACE_YES) continue;
-        double z = b->has_position ? sampled(b, x, y).z : depth_from_channel(b, x, y);
-        if (b->has_position && b->depth_wins && !b->lateral) z = depth_from_channel(b, x, y);
-        if (!(z > 0.0) && b->depth_measured) z = depth_from_channel(b, x, y); // a bad P behind the eye
+        double z = b->position.has_p ? sampled(b, x, y).z : depth_from_channel(b, x, y);
+        if (b->position.has_p && b->position.z_wins && !b->position.lateral) z = depth_from_channel(b, x, y);
+        if (!(z > 0.0) && b->position.z_measured) z = depth_from_channel(b, x, y); // a bad P behind the eye
         float as_float = (float)z;
         if (as_float > 0.0f && isfinite(as_float))
-            b->raw[i] = as_float;
+            b->position.raw[i] = as_float;
         else
             b->surface[i] = SURFACE_NONE;
     }
@@ -69,7 +69,7 @@ static void raw_row(build *b, int y)
 static void settle_origin(build *b)
 {
     camera *c = &b->g->camera;
-    if (c->kind != CAMERA_ORTHOGRAPHIC || !b->has_position) return;
+    if (c->kind != CAMERA_ORTHOGRAPHIC || !b->position.has_p) return;
     double low = INFINITY, high = -INFINITY;
     for (int y = 0; y < b->g->height; y++)
         for (int x = 0; x < b->g->width; x++) {
@@ -82,8 +82,8 @@ static void settle_origin(build *b)
 
 bool positions_raw(build *b)
 {
-    b->raw = mem_pixels((size_t)b->g->width * (size_t)b->g->height, sizeof *b->raw, b->e);
-    if (!b->raw) return false;
+    b->position.raw = mem_pixels((size_t)b->g->width * (size_t)b->g->height, sizeof *b->position.raw, b->e);
+    if (!b->position.raw) return false;
     settle_origin(b);
     if (!measure_depth(b)) return false;
     build_rows(b, raw_row);
@@ -100,7 +100,7 @@ static bool neighbours_allow(const build *b, int x, int y, double z)
     for (int v = y - 1; v <= y + 1; v++)
         for (int u = x - 1; u <= x + 1; u++) {
             if (u < 0 || v < 0 || u >= b->g->width || v >= b->g->height) continue;
-            double d = (double)b->raw[build_index(b, u, v)];
+            double d = (double)b->position.raw[build_index(b, u, v)];
             if (d > 0.0) low = fmin(low, inverse ? 1.0 / d : d), high = fmax(high, inverse ? 1.0 / d : d);
         }
     bool border = x == 0 || y == 0 || x == b->g->width - 1 || y == b->g->height - 1;
@@ -112,14 +112,14 @@ static bool neighbours_allow(const build *b, int x, int y, double z)
 // else none.
 static double depth_of_stray(build *b, int x, int y)
 {
-    atomic_fetch_add(&b->bad_positions, 1);
-    if (b->depth_measured) return depth_from_channel(b, x, y);
+    atomic_fetch_add(&b->defects.positions, 1);
+    if (b->position.z_measured) return depth_from_channel(b, x, y);
     static const int step[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
-    double z = (double)b->raw[build_index(b, x, y)];
+    double z = (double)b->position.raw[build_index(b, x, y)];
     for (int i = 0; i < 4; i++) {
         int u = x + step[i][0], v = y + step[i][1];
         if (u < 0 || v < 0 || u >= b->g->width || v >= b->g->height) continue;
-        double d = (double)b->raw[build_index(b, u, v)];
+        double d = (double)b->position.raw[build_index(b, u, v)];
         if (d > 0.0 && fabs(d - z) < same_depth * z) return z;
     }
     return 0.0;
@@ -128,18 +128,19 @@ static double depth_of_stray(build *b, int x, int y)
 // *moved: depth is where the plane through P meets the pixel's own ray.
 static double final_depth(build *b, int x, int y, bool *moved)
 {
-    double z = (double)b->raw[build_index(b, x, y)];
+    double z = (double)b->position.raw[build_index(b, x, y)];
     *moved = false;
-    if (!b->has_position || !(z > 0.0) || (b->depth_wins && !b->lateral)) return z;
+    if (!b->position.has_p || !(z > 0.0) || (b->position.z_wins && !b->position.lateral)) return z;
     vec3 p = sampled(b, x, y);
     double off = pixels_off(b, p, x, y);
     if (off <= on_ray) return z;
-    if (!(off <= b->far_pixels)) return depth_of_stray(b, x, y);
+    if (!(off <= b->position.far_pixels)) return depth_of_stray(b, x, y);
     vec3 n, d = build_ray(&b->g->camera, x, y);
-    if (!normals_read(b, x, y, &n)) n = normals_from_depth(b, b->raw, x, y);
+    if (!normals_read(b, x, y, &n)) n = normals_from_depth(b, b->position.raw, x, y);
     double cosine = v3_dot(n, d);
     if (fabs(cosine) < grazing * v3_length(d)) return z;
-    if (fabs(cosine) < bump * v3_length(d) && fabs(v3_dot(normals_from_depth(b, b->raw, x, y), d)) > 2.0 * bump * v3_length(d))
+    if (fabs(cosine) < bump * v3_length(d) &&
+        fabs(v3_dot(normals_from_depth(b, b->position.raw, x, y), d)) > 2.0 * bump * v3_length(d))
         return z;
     // Perspective: the ray starts at the eye. Orthographic: at the pixel's place on the plane z = 0.
     vec3 start = build_point(&b->g->camera, x, y, 0.0);
@@ -168,5 +169,5 @@ void positions_final(build *b)
         b->g->valid += b->g->depth[i] > 0.0f;
         b->g->off_ray += b->surface[i];
     }
-    b->g->depth_from_position = b->has_position && !b->depth_wins;
+    b->g->depth_from_position = b->position.has_p && !b->position.z_wins;
 }

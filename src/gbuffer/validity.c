@@ -12,19 +12,19 @@ static const double largest_half = 65504.; // what a clamped background becomes
 static bool depth_good(const build *b, double z)
 {
     if (!(z > 0.0) || !isfinite(z) || z >= b->r->background_depth) return false;
-    return b->depth.type != SAMPLE_HALF || z < largest_half;
+    return b->position.z.type != SAMPLE_HALF || z < largest_half;
 }
 
 static surface classify(build *b, int x, int y)
 {
-    bool good = !b->has_depth || depth_good(b, build_depth(b, x, y));
-    if (!b->has_position) return good ? SURFACE_YES : SURFACE_NONE;
+    bool good = !b->position.has_z || depth_good(b, build_depth(b, x, y));
+    if (!b->position.has_p) return good ? SURFACE_YES : SURFACE_NONE;
     vec3 p = build_position(b, x, y);
     double most = fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
-    if (b->has_depth && good && !v3_finite(p)) atomic_fetch_add(&b->bad_positions, 1);
+    if (b->position.has_z && good && !v3_finite(p)) atomic_fetch_add(&b->defects.positions, 1);
     if (!good || !v3_finite(p) || most >= far_position) return SURFACE_NONE;
     if (most > 0.0) return SURFACE_YES;
-    return b->has_depth ? SURFACE_ORIGIN : SURFACE_NONE;
+    return b->position.has_z ? SURFACE_ORIGIN : SURFACE_NONE;
 }
 
 static void classify_row(build *b, int y)
@@ -43,11 +43,11 @@ static size_t count_surfaces(const build *b)
 static bool classify_all(build *b)
 {
     build_rows(b, classify_row);
-    b->candidates = count_surfaces(b);
-    if (!b->has_position || !b->has_depth) return true;
-    if (2 * b->candidates >= (size_t)b->g->width * (size_t)b->g->height) return true;
-    b->has_depth = false;
-    size_t with_depth = b->candidates;
+    b->sample.candidates = count_surfaces(b);
+    if (!b->position.has_p || !b->position.has_z) return true;
+    if (2 * b->sample.candidates >= (size_t)b->g->width * (size_t)b->g->height) return true;
+    b->position.has_z = false;
+    size_t with_depth = b->sample.candidates;
     uint8_t *kept = b->surface;
     b->surface = mem_zero((size_t)b->g->width * (size_t)b->g->height, 1, b->e);
     if (!b->surface) {
@@ -59,12 +59,12 @@ static bool classify_all(build *b)
     if (2 * with_depth >= without) {
         free(b->surface);
         b->surface = kept;
-        b->has_depth = true;
+        b->position.has_z = true;
         return true;
     }
     free(kept);
-    b->candidates = without;
-    atomic_store(&b->bad_positions, 0); // they were background
+    b->sample.candidates = without;
+    atomic_store(&b->defects.positions, 0); // they were background
     log_warn(b->log, "depth-background",
              "the depth channel calls %zu of %zu pixels with a position background; it is ignored (--depth names another)",
              without - with_depth, without);
@@ -75,13 +75,13 @@ static bool classify_all(build *b)
 // One pixel out of every run of `stride` surface pixels in reading order, at random.
 static bool sample(build *b)
 {
-    free(b->points);
-    free(b->point_depth);
-    b->point_count = 0;
-    size_t stride = b->candidates / SAMPLE_POINTS + 1, most = b->candidates / stride + 1;
-    b->points = mem_pixels(most, sizeof *b->points, b->e);
-    b->point_depth = mem_pixels(most, sizeof *b->point_depth, b->e);
-    if (!b->points || !b->point_depth) return false;
+    free(b->sample.points);
+    free(b->sample.depth);
+    b->sample.count = 0;
+    size_t stride = b->sample.candidates / SAMPLE_POINTS + 1, most = b->sample.candidates / stride + 1;
+    b->sample.points = mem_pixels(most, sizeof *b->sample.points, b->e);
+    b->sample.depth = mem_pixels(most, sizeof *b->sample.depth, b->e);
+    if (!b->sample.points || !b->sample.depth) return false;
     uint64_t random = 3;
     size_t seen = 0, chosen = (size_t)(solve_random(&random) % stride);
     for (int y = 0; y < b->g->height; y++)
@@ -89,9 +89,9 @@ static bool sample(build *b)
             if (b->surface[build_index(b, x, y)] != SURFACE_YES) continue;
             if (seen++ != chosen) continue;
             chosen = seen - 1 - (seen - 1) % stride + stride + (size_t)(solve_random(&random) % stride);
-            vec3 p = b->has_position ? build_position(b, x, y) : v3(0, 0, 0);
-            b->points[b->point_count] = (camera_point){p, x + 0.5, y + 0.5};
-            b->point_depth[b->point_count++] = b->has_depth ? build_depth(b, x, y) : (double)NAN;
+            vec3 p = b->position.has_p ? build_position(b, x, y) : v3(0, 0, 0);
+            b->sample.points[b->sample.count] = (camera_point){p, x + 0.5, y + 0.5};
+            b->sample.depth[b->sample.count++] = b->position.has_z ? build_depth(b, x, y) : (double)NAN;
         }
     return true;
 }
