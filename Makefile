@@ -56,7 +56,7 @@ SHADERS  := $(wildcard shaders/*.comp)
 GLSL     := $(SHADERS) $(wildcard shaders/include/*.glsl shaders/params/*.glsl)
 # What decides pixels, beside the settings and the inputs: a change of it makes --skip-existing make frames again.
 DECIDES  := $(sort $(GLSL) $(wildcard src/exr/*.[ch] src/gbuffer/*.[ch] src/light/*.[ch] src/passes/*.[ch] src/plugin/*_shim.cpp) \
-              src/base/half.c src/base/half.h src/base/vec.h src/gpu/program.c \
+              src/base/half.c src/base/half.h src/base/sort.c src/base/vec.h src/base/words.c src/base/words.h src/gpu/program.c \
               $(foreach f,filter frame job layers output output_names output_view plan read read_back relight settings steps views,src/pipeline/$(f).c src/pipeline/$(f).h))
 BIN      := $(BUILD)/ssdo-filter
 # The library, src/ssdo.h: the rooms as one object that shows nothing but ssdo_*.
