@@ -17,6 +17,9 @@ static const double most_bend = 0.5;      // second difference of depth over a p
 static const double most_rest = 0.1;      // of a pixel's values that two surfaces do not explain, squared
 static const double turn = 0.2;           // weight of a turn of the normal, squared, that only the pixel itself tells of
 static const double odd_angle = 0.035;    // radians that normals are off the surface's
+static const double bumped = 0.04;        // a bump map's turn of a normal
+static const double least_turn = 0.02;    // of normals a pixel apart, that a round surface is told by
+static const double uneven = 0.3;         // second difference of the squared cosines over the first: a fold, no round surface
 static const double step_of_depth = 0.05; // of the depth, that counts as much as normals at right angles
 
 typedef struct stored {
@@ -252,22 +255,22 @@ static mixture best_mixture(const repair *r, const stored *s, const side *list, 
     return best;
 }
 
-// How far a bump map turns the normals around a side's clean pixel away from the surface that the positions form. 0 and false
-// where there are too few pixels to tell.
-static bool bump_at(const repair *r, const side *own, int x, int y, vec3 *bump)
+static bool clean_at(const repair *r, int x, int y) { return inside(r->b, x, y) && r->pixels[build_index(r->b, x, y)].clean; }
+
+// How far a bump map turns the normal of a clean pixel away from the surface that the positions around it form. 0 and false where
+// there are too few clean pixels to tell.
+static bool bump_at(const repair *r, int x, int y, vec3 *bump)
 {
     static const int step[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
-    const build *b = r->b;
-    int u = own->u + (own->u > x) - (own->u < x), v = own->v + (own->v > y) - (own->v < y); // one further inside
     vec3 at[4];
     *bump = v3(0, 0, 0);
-    if (!inside(b, u, v) || !r->pixels[build_index(b, u, v)].clean) return false;
+    if (!clean_at(r, x, y)) return false;
     for (int k = 0; k < 4; k++) {
-        int p = u + step[k][0], q = v + step[k][1];
-        if (!inside(b, p, q) || !r->pixels[build_index(b, p, q)].clean) return false;
-        at[k] = place_of(r, p, q);
+        int u = x + step[k][0], v = y + step[k][1];
+        if (!clean_at(r, u, v)) return false;
+        at[k] = place_of(r, u, v);
     }
-    vec3 as_stored = r->pixels[build_index(b, u, v)].n, n = v3_normalize(v3_cross(v3_sub(at[0], at[1]), v3_sub(at[2], at[3])));
+    vec3 as_stored = r->pixels[build_index(r->b, x, y)].n, n = v3_normalize(v3_cross(v3_sub(at[0], at[1]), v3_sub(at[2], at[3])));
     double cosine = v3_dot(n, as_stored);
     if (!(fabs(cosine) > 0.7)) return false;
     *bump = v3_sub(as_stored, v3_scale(n, cosine < 0.0 ? -1.0 : 1.0));
@@ -313,14 +316,72 @@ static double near_depth(const repair *r, const stored *s, const mixture *m, vec
     return z + trust * (seen - z);
 }
 
+// Two or three clean pixels in a line, the first next to the mixed one, and the step from each to the one further inside.
+typedef struct inward {
+    int dx, dy;
+    vec3 across[2]; // what of the normals is at right angles to the ray, unit
+    double q[3];    // squared cosine of the normals with their rays
+} inward;
+
+static bool look_inward(const repair *r, const side *own, int x, int y, inward *in)
+{
+    const build *b = r->b;
+    in->dx = (own->u > x) - (own->u < x), in->dy = (own->v > y) - (own->v < y);
+    vec3 normals[3];
+    for (int k = 0; k < 3; k++) {
+        int u = own->u + k * in->dx, v = own->v + k * in->dy;
+        if (!clean_at(r, u, v)) return false;
+        vec3 ray = v3_normalize(build_ray(&b->g->camera, u, v)), n = v3_normalize(r->pixels[build_index(b, u, v)].n);
+        double cosine = v3_dot(n, ray);
+        if (k < 2) in->across[k] = v3_normalize(v3_sub(n, v3_scale(ray, cosine)));
+        in->q[k] = cosine * cosine, normals[k] = n;
+    }
+    return v3_length(v3_sub(normals[0], normals[1])) > least_turn &&
+           fabs(in->q[0] - 2.0 * in->q[1] + in->q[2]) < uneven * fabs(in->q[1] - in->q[0]);
+}
+
+// A round surface is followed from clean pixels to the pixel's centre. The squared cosine between normal and ray changes evenly
+// with the distance in the picture, down to 0 at the outline. The far side's share tells where that is, too. A circle's chord is
+// at right angles to the mean of the normals at its ends, which gives the depth. False where the surface is not round, or has
+// bumps.
+static bool follow_round(const repair *r, const mixture *m, int x, int y, double *z, vec3 *n)
+{
+    const build *b = r->b;
+    const side *own = m->share > 0.5 ? m->far : m->near;
+    inward in;
+    vec3 bump;
+    if (own->z == 0.0 || !r->lengths || !look_inward(r, own, x, y, &in)) return false;
+    if (!bump_at(r, own->u + in.dx, own->v + in.dy, &bump) && !bump_at(r, own->u + 2 * in.dx, own->v + 2 * in.dy, &bump))
+        return false;
+    if (v3_length(bump) > bumped) return false;
+    double steps = hypot(x - own->u, y - own->v) / hypot(in.dx, in.dy), slope = in.q[1] - in.q[0], q = in.q[0] - slope * steps;
+    if (slope > 0.0 && own == m->near) {
+        double flat = hypot(in.across[0].x, in.across[0].y); // pixels towards the outline a step
+        double towards = fabs(in.dx * in.across[0].x + in.dy * in.across[0].y) / fmax(flat, 1e-3);
+        q = 0.5 * (q + slope * fmax(0.5 - m->share, 0.0) / fmax(towards, 0.3));
+    }
+    q = fmin(fmax(q, 0.0), 1.0);
+    vec3 ray = v3_normalize(build_ray(&b->g->camera, x, y)), clean = v3_normalize(own->n);
+    vec3 across = v3_add(in.across[0], v3_scale(v3_sub(in.across[0], in.across[1]), steps));
+    across = v3_normalize(v3_sub(across, v3_scale(ray, v3_dot(across, ray))));
+    double sign = v3_dot(clean, ray) < 0.0 ? -1.0 : 1.0;
+    vec3 at = v3_add(v3_scale(across, sqrt(1.0 - q)), v3_scale(ray, sign * sqrt(q)));
+    if (!(v3_dot(at, clean) > 0.5)) return false;
+    *n = at;
+    *z = carried(b, own->u, own->v, v3_normalize(v3_add(at, clean)), x, y);
+    return true;
+}
+
 // What the pixel's own side is at its centre.
 static void settle(const repair *r, const stored *s, const mixture *m, int x, int y, double *z, vec3 *n)
 {
     const side *own = m->share > 0.5 ? m->far : m->near;
+    if (follow_round(r, m, x, y, z, n)) return;
     *z = own->z, *n = own->n;
     if (own != m->near || !r->lengths || !(v3_dot(m->n, own->n) > 0.0)) return;
     vec3 bump;
-    double odd = bump_at(r, own, x, y, &bump) ? 0.003 + 0.3 * v3_length(bump) : odd_angle;
+    int u = own->u + (own->u > x) - (own->u < x), v = own->v + (own->v > y) - (own->v < y); // one further inside
+    double odd = bump_at(r, u, v, &bump) ? 0.003 + 0.3 * v3_length(bump) : odd_angle;
     vec3 clean = v3_normalize(v3_sub(own->n, bump));
     vec3 at = normal_at_centre(r->b, v3_normalize(v3_sub(m->n, bump)), clean, own, fmax(m->share, 0.0), x, y);
     *n = v3_normalize(v3_add(at, bump));

@@ -277,6 +277,16 @@ static void filtered_against_closest(void **state)
     assert_true(worst[0] < 0.04 && worst[1] < 0.03 && most < 2.0);
 }
 
+// The case's rms; fails unless it is read right.
+static double must_be_right(readings *r, const reading_case *c)
+{
+    char name[256];
+    double rms;
+    reading_name(c, name, sizeof name);
+    if (judge(r, c, &rms) != RIGHT) fail_msg("rms %.4f: %s", rms, name);
+    return rms;
+}
+
 // A filter takes means of what is stored: distances from the eye, 1 / z, values within 0..1 that its negative lobes leave,
 // normals behind a display curve. The kind of depth is found although the edges fit none.
 static void filtered_as_stored(void **state)
@@ -305,19 +315,34 @@ static void filtered_as_stored(void **state)
                                 .encoding = forms[i].encoding,
                                 .depth = forms[i].depth,
                                 .filter = forms[i].filter};
-        char name[256];
-        double rms;
-        reading_name(&c, name, sizeof name);
-        if (judge(r, &c, &rms) != RIGHT) fail_msg("rms %.4f: %s", rms, name);
-        worst = fmax(worst, rms);
+        worst = fmax(worst, must_be_right(r, &c));
     }
     close_scene(r);
     printf("figure: filtered passes of every kind of value: at most %.4f rms\n", worst);
 }
 
+// Round surfaces are followed to their outlines.
+static void filtered_outlines(void **state)
+{
+    static const struct {
+        int scale;
+        reading_filter filter;
+    } forms[] = {{1, FILTER_BOX}, {2, FILTER_BOX}, {2, FILTER_GAUSS}};
+    readings *r = *state;
+    double worst = 0.0;
+    for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+        const reading_case c = {
+            .scene = SCENE_ROUND, .position = WORLD, .normal = WORLD, .encoding = NORMAL_UNORM, .filter = forms[i].filter};
+        open_scene(r, SCENE_ROUND, forms[i].scale);
+        worst = fmax(worst, must_be_right(r, &c));
+        close_scene(r);
+    }
+    printf("figure: outlines of filtered passes: at most %.4f rms\n", worst);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_combination), cmocka_unit_test(filtered_against_closest),
-                                       cmocka_unit_test(filtered_as_stored)};
+                                       cmocka_unit_test(filtered_as_stored), cmocka_unit_test(filtered_outlines)};
     return cmocka_run_group_tests(tests, open_readings, close_readings);
 }
