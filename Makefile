@@ -13,7 +13,7 @@ SODIR    := $(PREFIX)/lib
 PCDIR    := $(SODIR)/pkgconfig
 SANITIZE ?=
 BUILD    ?= build$(if $(SANITIZE),/$(subst $(comma),-,$(SANITIZE)))# each sanitizer has a folder of its own
-JOBS     := $(if $(findstring j,$(MAKEFLAGS)),,-j$(shell nproc)) # of the inner make, when the user gave none
+JOBS      = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) # of the inner make, when the user gave none; make adds -j to MAKEFLAGS late
 Q        := $(if $(V),,@)# make V=1 shows the commands
 ifeq ($(origin CC),default)
 CC       := gcc
@@ -198,7 +198,7 @@ demo: deps
 
 # The lint is one of the tests, so that it fills what the others leave idle.
 check: deps-check
-	@$(MAKE) $(JOBS) --no-print-directory all unit $(BUILD)/shaders.c
+	@$(MAKE) $(JOBS) --no-print-directory all unit
 	@SANFLAGS='$(SANFLAGS)' sh tests/run.sh $(BUILD) tests/lint.sh $(UNIT) $(HARD) $(REPLAY)
 
 # The build without a warning and the unit tests that take a moment: tests/fast.txt.

@@ -10,6 +10,8 @@
 //   BOUNCE: indirect = sum w (blocked share x light that the nearest blocker sends) / sum w. With EXITANT the sender image is a picture
 //           that the renderer lit. Without, it is light before albedo, and is multiplied by the sender's albedo here
 // OUTSIDE: not all directions that leave the frame are open (include/outside.glsl); SURROUND: further G-buffers say which
+// RECEIVERS: the pixels are those of a frame of half the size (src/gbuffer/half.h); what they see is the whole frame.
+// LONE: the pixels are those of a list.
 // HORIZON (gtao), BITMASK (bitmask) or RUNS (arc) says what blocks the sectors; PLANES adds planes to RUNS.
 #if !defined(LIGHT) && !defined(BOUNCE)
 #define LIMITED // to the radius; light comes from any distance
@@ -45,6 +47,25 @@ layout(r32f) writeonly uniform image2D half_difference_image; // of the occlusio
 #endif
 #ifdef ROUND
 layout(rg32f) uniform image2D sums_image; // of earlier rounds: sum w (open share), sum w
+#endif
+
+struct Receiver {
+    vec2 origin; // where it appears on the frame that it sees, in pixels
+    ivec2 pixel; // of that frame, on its surface
+    float depth;
+    vec3 N;
+};
+#ifdef RECEIVERS
+PICTURE(r32f, receiver_depth);
+PICTURE(rgba32f, receiver_normal);
+Receiver receiver_at(ivec2 p) {
+    vec4 normal = FETCH(receiver_normal, p);
+    int chosen = int(normal.w);
+    ivec2 q = 2 * p + ivec2(chosen & 1, (chosen >> 1) & 1);
+    return Receiver(chosen < 4 ? 2.0 * vec2(p) + 1.0 : vec2(q) + 0.5, q, FETCH(receiver_depth, p).r, normal.xyz);
+}
+#else
+Receiver receiver_at(ivec2 p) { return Receiver(vec2(p) + 0.5, p, depth_at(p), normal_at(p)); }
 #endif
 
 // Light that a surface sends to the receiver. The camera does not see its back, so the light of a back is a guess: it faces the
@@ -89,20 +110,30 @@ void store(ivec2 p, float scalar, vec3 light, vec3 indirect) {
 #endif
 }
 
+#ifdef LONE // tile: x the first of the list's pixels, y their end
+layout(std430) readonly buffer Lone { uint lone[]; };
+#endif
+
 void main() {
+#ifdef LONE
+    uint item = uint(tile.x) + gl_WorkGroupID.x * (GROUP_SIDE * GROUP_SIDE) + gl_LocalInvocationIndex;
+    if (item >= uint(tile.y)) return;
+    ivec2 p = ivec2(lone[item] & 0xffffu, lone[item] >> 16u);
+#else
     ivec2 p = this_pixel();
     if (!in_tile(p)) return;
-    float depth = depth_at(p);
-    if (depth == 0.0) {
+#endif
+    Receiver here = receiver_at(p);
+    if (here.depth == 0.0) {
         store(p, 1.0, vec3(0.0), vec3(0.0));
 #ifdef HALF_DIFFERENCE
         imageStore(half_difference_image, p, vec4(0.0));
 #endif
         return;
     }
-    vec3 P = position_of(p, depth), N = normal_at(p), V = view_of(P);
+    vec2 origin = here.origin;
+    vec3 P = position_at(origin, here.depth), N = here.N, V = view_of(P);
     mat3 around = tangent_frame(V);
-    vec2 origin = vec2(p) + 0.5;
     float eye_distance = length(P), open = 0.0, all = 0.0, first_open = 0.0, first_all = 0.0;
     float tangent = ball_tangent(P);
     vec3 turn = pixel_noise(p, params.seed);
@@ -117,7 +148,7 @@ void main() {
 #endif
     vec3 bounced = vec3(0.0);
 #ifdef BOUNCE
-    unseen = UNSEEN * FETCH(sender_image, p).rgb;
+    unseen = UNSEEN * FETCH(sender_image, here.pixel).rgb;
 #ifdef OUTSIDE
     vec3 outside_light = FETCH(outside_image, ivec2(0)).rgb;
 #endif

@@ -46,7 +46,8 @@ float leaves_by_opening(int view, vec3 P, vec3 direction, float from) {
             left = left && outdoors;
         } else if (outdoors) {
             bool beyond = shell.y > 0.0 && (last || rise > shell.y * scale);
-            if (last || (beyond && before && a > from)) result = beyond ? 0.0 : 1.0;
+            bool edge = abs(shell.y - low_wall) > SHELL_STEP * shell.y; // it passes behind the edge of what is seen there
+            if (last || (beyond && before && a > from && !edge)) result = beyond ? 0.0 : 1.0;
             before = !beyond;
         } else {
             bool beyond = last || rise > abs(shell.x) * scale, edge = false;
@@ -74,7 +75,7 @@ float leaves_by_opening(int view, vec3 P, vec3 direction, float from) {
             before = !beyond;
         }
         low = a;
-        low_wall = abs(shell.x);
+        low_wall = outdoors ? shell.y : abs(shell.x);
     }
     return result >= 0.0 ? result : left ? 1.0 : outdoors ? OUT_OF_SIGHT : -1.0;
 }
@@ -128,7 +129,7 @@ float openness(vec3 V, vec3 across, vec2 at, Exits x) {
     for (int i = 0; i < params.views; i++) {
         vec3 eye = surround_eye(i), P = x.P - eye;
         bool own = dot(eye, eye) < 1e-4 * dot(x.P, x.P); // only for the frame's own eye the march has looked already
-        float o = leaves_by_opening(i, P, at.x * V + at.y * across, own ? (at.y > 0.0 ? x.right : x.left) : 0.0);
+        float o = leaves_by_opening(i, P, at.x * V + at.y * across, own ? (at.y > 0.0 ? x.right : x.left) : 0.05);
         open = o == 0.0 || open == 0.0 ? 0.0 : max(open, o);
     }
 #endif

@@ -21,7 +21,7 @@ void options_defaults(options *o)
         .thickness = -1,
         .outside = -1,
         .blur = -1,
-        .half = -1,
+        .resolution = RESOLUTION_BY_QUALITY,
         .mesh_axes = -1,
         .scale = 1,
         .contrast = 1,

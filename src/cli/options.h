@@ -52,6 +52,14 @@ typedef struct path_list {
 } path_list;
 
 // What the user asked for. Strings point into argv or to constants; NULL means "not given". Defaults: options_defaults().
+// At which size what is estimated.
+typedef enum estimate_resolution {
+    RESOLUTION_BY_QUALITY = -1,
+    RESOLUTION_FULL,
+    RESOLUTION_LIGHT, // light and bounce at half the size
+    RESOLUTION_HALF,
+} estimate_resolution;
+
 typedef struct options {
     const char *inputs[OPT_MAX_INPUTS];
     int input_count;
@@ -75,7 +83,7 @@ typedef struct options {
     bool from_sh;
     int blur; // radius in pixels; 0 none; -1 the method's default
     double scale, contrast;
-    int half; // --resolution: 1 estimated at half the size, 0 at the whole, -1 as --quality has it
+    estimate_resolution resolution;
 
     const char *mesh; // of --method raytrace
     int trace;        // passes/trace.h's backend: 0 auto, 1 embree, 2 gpu

@@ -74,14 +74,16 @@ static double facing(const gbuffer *g, int x, int y)
 // only where the median's plane says nothing about the centre. If no plane does, the median keeps its own depth; or it gets depth
 // 0 if it is seen nearly edge-on (the last row below a horizon), because there its own depth would be far off the surface at the
 // centre.
-static int choose(const gbuffer *g, int bx, int by, int n, const int px[4], const int py[4], double *depth)
+static int choose(const gbuffer *g, int bx, int by, int n, const int px[4], const int py[4], double *depth, bool *own)
 {
     int middle = (n - 1) / 2;
+    *own = false;
     for (int k = 0; k < n; k++) {
         int i = (middle + k) % n;
         *depth = plane_depth(g, px[i], py[i], 2.0 * bx + 1.0, 2.0 * by + 1.0);
         if (*depth > 0.0 && in_range(g, px[i], py[i], *depth)) return i;
     }
+    *own = true;
     bool edge_on = facing(g, px[middle], py[middle]) < EDGE_ON;
     *depth = edge_on ? 0.0 : (double)g->depth[at(g, px[middle], py[middle])];
     return middle;
@@ -113,11 +115,13 @@ static bool halve_row(void *context, size_t row, int worker)
         int px[4], py[4], y = (int)row, n = members(g, x, y, px, py);
         if (n == 0) continue;
         double depth;
-        int k = choose(g, x, y, n, px, py, &depth);
+        bool own;
+        int k = choose(g, x, y, n, px, py, &depth, &own);
         if (depth == 0.0) continue;
         size_t to = at(out, x, y), from = at(g, px[k], py[k]);
         out->depth[to] = (float)depth;
-        memcpy(out->normal + 4 * to, g->normal + 4 * from, 4 * sizeof(float));
+        memcpy(out->normal + 4 * to, g->normal + 4 * from, 3 * sizeof(float));
+        out->normal[4 * to + 3] = (float)(px[k] - 2 * x + 2 * (py[k] - 2 * y) + (own ? 4 : 0));
         if (out->albedo) mean_colour(g, g->albedo, n, px, py, k, out->albedo + 4 * to);
         if (out->beauty) mean_colour(g, g->beauty, n, px, py, k, out->beauty + 4 * to);
         h->valid[row]++;

@@ -248,64 +248,81 @@ static bool light_outside(pass_context *c, const arc_params *params, const gpu_i
 
 // Light comes from any distance, so this march has no radius. It makes the sky's light, through the open sectors, and the bounce,
 // from the blocked ones. One march makes both, unless the bounce needs the filtered sky light.
+//
+// On a smaller frame the pixels are the receivers; what blocks and sends light is the whole frame.
 static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
 {
+    pass_context *seen = c->whole ? c->whole : c;
     // A beauty is the light that surfaces send. Our own radiance is light before albedo.
     bool exitant = !c->set.relight, visibility = sky && c->want_visibility;
-    const gpu_image *sender = exitant ? &c->image[IMAGE_BEAUTY] : &c->image[IMAGE_RADIANCE],
-                    *albedo = exitant ? &c->image[IMAGE_BEAUTY] : &c->image[IMAGE_ALBEDO];
-    arc_params params = arc_unlimited_params_of(c);
+    const gpu_image *sender = &seen->image[exitant ? IMAGE_BEAUTY : IMAGE_RADIANCE],
+                    *albedo = &seen->image[exitant ? IMAGE_BEAUTY : IMAGE_ALBEDO];
+    if (!arc_make_inputs(seen, e)) return false;
+    arc_params params = arc_unlimited_params_of(seen);
     params.exitant = exitant;
     if (sky && (!pass_split_suns(c, e) || !pass_make_image(c, IMAGE_RADIANCE, e))) return false;
     if (visibility && !pass_make_image(c, IMAGE_VISIBILITY, e)) return false;
-    if (bounce && (!light_planes(c, &params, sender, albedo, e) || !light_outside(c, &params, sender, albedo, e) ||
+    if (bounce && (!light_planes(seen, &params, sender, albedo, e) || !light_outside(seen, &params, sender, albedo, e) ||
                    !pass_make_image(c, IMAGE_INDIRECT, e)))
         return false;
     if (sky) c->suns_apart = c->sunless->map.id != 0;
-    variant v = arc_variant(c, "RUNS");
+    variant v = arc_variant(seen, "RUNS");
     variant_add(&v, sky, "LIGHT");
     variant_add(&v, visibility, "VISIBILITY");
     variant_add(&v, bounce, "BOUNCE");
     variant_add(&v, bounce && exitant, "EXITANT");
     variant_add(&v, arc_closes_outside(c), "OUTSIDE");
     variant_add(&v, arc_has_surround(c), "SURROUND");
-    const pass_call call = {
+    variant_add(&v, c->whole != NULL, "RECEIVERS");
+    variant_add(&v, c->at_lone, "LONE");
+    pass_call call = {
         .program = "arc",
         .label = sky && bounce ? "arc light+bounce"
                  : sky         ? "arc light"
                                : "arc bounce",
         .variant = v.words,
+        .seen = seen,
         .environment = sky && c->suns_apart ? &c->sunless->map : NULL,
-        .reads = {{"surface_image", &c->image[IMAGE_SURFACE]},
-                  {"planes_image", &c->image[IMAGE_PLANES]},
+        .reads = {{"surface_image", &seen->image[IMAGE_SURFACE]},
+                  {"planes_image", &seen->image[IMAGE_PLANES]},
                   {"sender_image", sender},
                   {"albedo_image", albedo},
-                  {"outside_image", &c->image[IMAGE_OUTSIDE_LIGHT]},
-                  {"rim_image", &c->image[IMAGE_RIM]},
-                  {"surround_image", &c->image[IMAGE_SURROUND]}},
+                  {"outside_image", &seen->image[IMAGE_OUTSIDE_LIGHT]},
+                  {"rim_image", &seen->image[IMAGE_RIM]},
+                  {"surround_image", &seen->image[IMAGE_SURROUND]},
+                  {"receiver_depth", &c->image[IMAGE_DEPTH]},
+                  {"receiver_normal", &c->image[IMAGE_NORMAL]}},
         .writes = {{"scalar_image", &c->image[IMAGE_VISIBILITY]},
                    {"light_image", &c->image[IMAGE_RADIANCE]},
                    {"indirect_image", &c->image[IMAGE_INDIRECT]}},
     };
-    return arc_run_as_adaptive(c, &call, &params, e);
+    if (!c->at_lone) return arc_run_as_adaptive(c, &call, &params, e);
+    call.params = &params, call.params_size = sizeof params;
+    return pass_at_lone(c, &call,
+                        (sky ? IMAGE_BIT(IMAGE_RADIANCE) : 0) | (visibility ? IMAGE_BIT(IMAGE_VISIBILITY) : 0) |
+                            (bounce ? IMAGE_BIT(IMAGE_INDIRECT) : 0),
+                        e);
 }
+
+static bool light(pass_context *c, error *e) { return run_light(c, true, c->want_indirect, e); }
 
 static bool run(pass_context *c, error *e)
 {
     if (!arc_make_inputs(c, e) || !arc_run_occlusion(c, "RUNS", e)) return false;
-    return !(c->want_radiance || c->want_visibility) || run_light(c, true, c->want_indirect, e);
+    return !(c->want_radiance || c->want_visibility) || light(c, e);
 }
 
 static bool run_bounce(pass_context *c, error *e)
 {
-    return c->image[IMAGE_INDIRECT].id || (arc_make_inputs(c, e) && run_light(c, false, true, e));
+    return (c->image[IMAGE_INDIRECT].id && !c->at_lone) || run_light(c, false, true, e);
 }
 
 static const variant_row variants[] = {
     {.program = "arc",
-     .pattern = ARC_OCCLUSION("RUNS [PLANES]") " | RUNS [PLANES] LIGHT [VISIBILITY] [OUTSIDE] [SURROUND] | "
-                                               "RUNS [PLANES] LIGHT [VISIBILITY] BOUNCE EXITANT [OUTSIDE] [SURROUND] | "
-                                               "RUNS [PLANES] BOUNCE [EXITANT] [OUTSIDE] [SURROUND]"},
+     .pattern = ARC_OCCLUSION(
+         "RUNS [PLANES]") " | RUNS [PLANES] LIGHT [VISIBILITY] [OUTSIDE] [SURROUND] [RECEIVERS] [LONE] | "
+                          "RUNS [PLANES] LIGHT [VISIBILITY] BOUNCE EXITANT [OUTSIDE] [SURROUND] [RECEIVERS] [LONE] | "
+                          "RUNS [PLANES] BOUNCE [EXITANT] [OUTSIDE] [SURROUND] [RECEIVERS] [LONE]"},
     {.program = "outside_light", .pattern = ""},
     {.program = "plane_light", .pattern = ""},
     {.program = "suns", .pattern = "[OUTSIDE] [SURROUND]"},
@@ -341,4 +358,5 @@ const method method_arc = {
     .bounce = &bounce_arc,
     .variants = variants,
     .run = run,
+    .run_light = light,
 };

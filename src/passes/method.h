@@ -66,6 +66,9 @@ typedef struct method {
     const bounce_kind *bounce;   // its own, NULL for none
     const variant_row *variants; // of its shaders; ends with a NULL program
     bool (*run)(pass_context *c, error *e);
+    // Radiance, visibility and the bounce, those that are wanted, where `run` was not asked for them; NULL: only `run` makes
+    // them.
+    bool (*run_light)(pass_context *c, error *e);
 } method;
 
 extern const method *const methods[];      // the default one first, then by name; ends with NULL. Generated

@@ -21,6 +21,7 @@ typedef int ivec4[4], ivec2[2];
 #include "../../shaders/params/composite.glsl"
 #include "../../shaders/params/denoise.glsl"
 #include "../../shaders/params/depthmask.glsl"
+#include "../../shaders/params/downsample.glsl"
 #include "../../shaders/params/frame.glsl"
 #include "../../shaders/params/hbao.glsl"
 #include "../../shaders/params/points.glsl"
@@ -59,6 +60,7 @@ WHOLE(blur_params);
 WHOLE(composite_params);
 WHOLE(denoise_params);
 WHOLE(depthmask_params);
+WHOLE(downsample_params);
 WHOLE(frame_block);
 WHOLE(hbao_params);
 WHOLE(tone_params);

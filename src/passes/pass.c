@@ -96,11 +96,6 @@ pass_context pass_like(const pass_context *c, const gbuffer *gb, const pass_sett
         .stop = c->stop,
         .set = *set,
         .want_diffuse = c->want_diffuse,
-        .want_bent = c->want_bent,
-        .want_error = c->want_error,
-        .want_indirect = c->want_indirect,
-        .want_radiance = c->want_radiance,
-        .want_visibility = c->want_visibility,
         .gb = gb,
         .env = c->env,
         .environment = c->environment,
@@ -174,6 +169,7 @@ static const gpu_image *picture_named(const pass_context *c, const pass_call *ca
         if (strcmp(p->name, name) == 0) return p->image;
     for (const pass_picture *p = call->writes; p->name; p++)
         if (strcmp(p->name, name) == 0) return p->image;
+    if (call->seen) c = call->seen;
     if (strcmp(name, "depth_image") == 0) return &c->image[IMAGE_DEPTH];
     if (strcmp(name, "normal_image") == 0) return &c->image[IMAGE_NORMAL];
     return NULL;
@@ -251,7 +247,7 @@ static bool run_call(pass_context *c, const pass_call *call, error *e)
     gpu_tiles tiles = call->tiles ? *call->tiles : c->tiles;
     tiles.stop = c->stop;
     glUseProgram(p->id);
-    glBindBufferBase(GL_UNIFORM_BUFFER, FRAME_BINDING, c->frame_uniforms);
+    glBindBufferBase(GL_UNIFORM_BUFFER, FRAME_BINDING, (call->seen ? call->seen : c)->frame_uniforms);
     if (call->params) gpu_uniforms_set(c->params_uniforms, PARAMS_BINDING, call->params, call->params_size);
     if (!bind_all(c, call, p, e)) return false;
     if (call->groups[0])

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "gbuffer/gbuffer.h"
+#include "gbuffer/half.h"
 #include "gbuffer/world_view.h"
 #include "gpu/gpu.h"
 #include "light/environment.h"
@@ -31,6 +32,13 @@ typedef struct pass_upload {
     size_t bytes;
 } pass_upload;
 
+// At which size a frame is estimated.
+typedef enum estimate_size {
+    SIZE_FULL,
+    SIZE_LIGHT, // light and bounce on a frame of half the size, if the method can make them apart from occlusion
+    SIZE_HALF,  // method and bounce on a frame of half the size
+} estimate_size;
+
 // Settings of one frame, all resolved: no "auto" is left.
 typedef struct pass_settings {
     double radius;        // scene units
@@ -51,7 +59,7 @@ typedef struct pass_settings {
     int seed;
     double outside; // share of the unseen directions outside the frame that are open to the environment; 1 all
     bool planes;    // let large planes stand in for what the camera does not see
-    bool half;      // method and bounce run on a frame of half the size
+    estimate_size size;
     double amount;
     const char *mesh;          // raytrace: the scene's surfaces, an OBJ file; borrowed
     int trace;                 // trace_backend of passes/trace.h
@@ -95,15 +103,19 @@ typedef struct pass_context {
     const volatile int *stop; // borrowed, may be NULL: not zero once the frame will be dropped; then no further tile is begun
     pass_settings set;
     bool want_diffuse; // the composite pass also writes the diffuse layer
+    // What the method should make beside occlusion; a step's own while it runs.
     bool want_bent;
-    bool want_error;                     // the standard error, after rounds
-    bool want_indirect;                  // the method's own loop makes the bounce too, if it can
-    bool want_radiance, want_visibility; // what the method's own loop should make besides occlusion
-    const gbuffer *gb;                   // borrowed
-    const environment *env;              // borrowed; NULL without light
-    gpu_image environment;               // borrowed: its texture; id 0 for the white one
-    const float *relight_sh[SH_IMAGES];  // --from-sh: 4 a pixel as in sh, borrowed; NULL: s3ho measures
-    const world_view *views;             // borrowed: what further G-buffers show
+    bool want_error;    // the standard error, after rounds
+    bool want_indirect; // the method's own loop makes the bounce too, if it can
+    bool want_radiance, want_visibility;
+    struct pass_context *whole; // borrowed; of SIZE_LIGHT's smaller frame: the frame that its marches see
+    const pixel_list *lone;     // borrowed, may be NULL: of SIZE_LIGHT's whole frame, the pixels the smaller does not show
+    bool at_lone;               // light is made of those alone
+    const gbuffer *gb;          // borrowed
+    const environment *env;     // borrowed; NULL without light
+    gpu_image environment;      // borrowed: its texture; id 0 for the white one
+    const float *relight_sh[SH_IMAGES]; // --from-sh: 4 a pixel as in sh, borrowed; NULL: s3ho measures
+    const world_view *views;            // borrowed: what further G-buffers show
     int view_count;
     const proxy_set *proxies;  // borrowed; NULL or empty: none
     pass_sunless *sunless;     // borrowed, lives as long as the batch
@@ -154,17 +166,18 @@ typedef struct pass_store {
 
 // One run of a shader program.
 typedef struct pass_call {
-    const char *program;          // shaders/<program>.comp
-    const char *variant;          // words of passes/variants.h; NULL: none
-    const char *label;            // in the report; NULL: the program's name. Lives as long as the context
-    bool untimed;                 // the caller times it together with other runs
-    const gpu_tiles *tiles;       // NULL: the frame's
-    bool everywhere;              // tiles without a surface too
-    bool exact;                   // never drawn: drawing may flush denormals
-    int groups[2];                // not 0: so many work groups instead of tiles,
-    int range[2];                 // and what the shader's `tile` holds then: first item, end
-    const gpu_image *environment; // NULL: the frame's
-    const void *params;           // of passes/params.h; NULL: none
+    const char *program;             // shaders/<program>.comp
+    const char *variant;             // words of passes/variants.h; NULL: none
+    const char *label;               // in the report; NULL: the program's name. Lives as long as the context
+    bool untimed;                    // the caller times it together with other runs
+    const gpu_tiles *tiles;          // NULL: the frame's
+    const struct pass_context *seen; // whose camera, depth and normal the shader has; NULL: the frame's
+    bool everywhere;                 // tiles without a surface too
+    bool exact;                      // never drawn: drawing may flush denormals
+    int groups[2];                   // not 0: so many work groups instead of tiles,
+    int range[2];                    // and what the shader's `tile` holds then: first item, end
+    const gpu_image *environment;    // NULL: the frame's
+    const void *params;              // of passes/params.h; NULL: none
     size_t params_size;
     pass_picture reads[PASS_MOST_READS + 1], writes[PASS_MOST_WRITES + 1]; // depth, normal and environment are always there
     pass_store buffers[PASS_MOST_BUFFERS + 1];
@@ -205,11 +218,17 @@ typedef struct pass_denoising {
 bool pass_denoise_across(pass_context *c, const pass_denoising *d, error *e); // one direction of it, then the other
 bool pass_denoise_down(pass_context *c, const pass_denoising *d, error *e);
 bool pass_denoise(pass_context *c, error *e); // occlusion: in place
+// Runs a march at the frame's lone pixels (pass_context.lone), then, unless there is no blur, the filter of pass_blur at those
+// pixels of what it `made`: radiance, visibility, indirect.
+bool pass_at_lone(pass_context *c, const pass_call *march, image_set made, error *e);
 // In place, over `radius` pixels; NULL = none.
 bool pass_blur(pass_context *c, int radius, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e);
 // Brings layers of a frame of half the size (gbuffer/half.h) to the size of `c`: the images of `which` that `small` has and `c`
 // lacks.
 bool pass_upsample(pass_context *c, const pass_context *small, image_set which, error *e);
+// Makes or replaces images of the smaller frame `c`: of each pixel's block the mean over the pixels of `whole` that are on its
+// surface. Colours only.
+bool pass_downsample(pass_context *c, const pass_context *whole, image_set which, error *e);
 // Spheres that the camera does not see. They block before pass_tone runs and add their bounce after the method's own bounce. Both
 // passes do nothing without spheres.
 bool pass_proxies(pass_context *c, error *e);                 // occlusion, visibility, radiance, bent, sh: in place

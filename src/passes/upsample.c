@@ -4,6 +4,9 @@
 
 // A surface may bend by this many footprints of a small pixel off the pixel's tangent plane before a tap loses weight.
 static const float SHARPNESS = 0.5f;
+// On the way down a pixel counts if it lies this near the small one's tangent plane, in its own footprints, and its normal has at
+// least this cosine with the small one's: as gbuffer/half.c brings colours down.
+static const float NEAR = 2.0f, LIKE = 0.7f;
 
 enum { SCALARS = 2, COLOURS = 2 }; // of a draw
 
@@ -65,4 +68,20 @@ bool pass_upsample(pass_context *c, const pass_context *small, image_set which, 
         if (d.scalar_count + d.colour_count == 0) return true;
         if (!bring(c, small, &d, e)) return false;
     }
+}
+
+bool pass_downsample(pass_context *c, const pass_context *whole, image_set which, error *e)
+{
+    const downsample_params params = {.whole_size = {whole->width, whole->height}, .near = NEAR, .like = LIKE};
+    for (int i = 0; i < IMAGE_COUNT; i++) {
+        if (!(which & IMAGE_BIT(i))) continue;
+        const pass_call call = {.program = "downsample",
+                                PASS_PARAMS(params),
+                                .reads = {{"whole_depth", &whole->image[IMAGE_DEPTH]},
+                                          {"whole_normal", &whole->image[IMAGE_NORMAL]},
+                                          {"colour_in", &whole->image[i]}},
+                                .writes = {{"colour_out", &c->image[i]}}};
+        if (!pass_make_image(c, (image_id)i, e) || !pass_run(c, &call, e)) return false;
+    }
+    return true;
 }

@@ -11,7 +11,7 @@ static void take_times(pass_context *c, const pass_context *small)
 {
     for (int i = 0; i < small->timing_count && c->timing_count < PASS_MAX_TIMINGS; i++)
         c->timings[c->timing_count++] = small->timings[i];
-    c->planes = small->planes;
+    if (!c->planes.found) c->planes = small->planes;
 }
 
 static bool halve(const job *j, frame_result *r, error *e)
@@ -21,7 +21,8 @@ static bool halve(const job *j, frame_result *r, error *e)
     if (r->uncovered) whole.coverage = NULL;
     if (!(given & IMAGE_BIT(IMAGE_ALBEDO))) whole.albedo = NULL;
     if (!(given & IMAGE_BIT(IMAGE_BEAUTY))) whole.beauty = NULL;
-    return gbuffer_halve(&whole, j->threads, &r->half, e);
+    return gbuffer_halve(&whole, j->threads, &r->half, e) &&
+           (r->set.size != SIZE_LIGHT || gbuffer_lone(&whole, &r->half, j->threads, &r->lone, e));
 }
 
 // ---- the list of steps, run
@@ -36,8 +37,9 @@ typedef struct runner {
 static bool open_small(runner *r, error *e)
 {
     pass_settings set = r->whole->set;
-    set.blur = (set.blur + 1) / 2; // as wide on the surface as at full size
+    set.blur = set.size == SIZE_LIGHT ? (3 * set.blur + 3) / 4 : (set.blur + 1) / 2; // as wide on the surface as at full size
     r->small = pass_like(r->whole, r->half, &set);
+    if (set.size == SIZE_LIGHT) r->small.whole = r->whole;
     r->open = pass_begin(&r->small, e);
     return r->open;
 }
@@ -61,11 +63,15 @@ static bool are_there(const pass_context *c, image_set images, const char *pass,
 
 static bool run_step(runner *r, const plan_step *s, error *e)
 {
-    if (s->size == STEP_SMALL && !r->open && !open_small(r, e)) return false;
-    pass_context *c = s->size == STEP_SMALL ? &r->small : r->whole;
-    const pass_context *from = s->size == STEP_WHOLE ? r->whole : &r->small;
+    if (s->size != STEP_WHOLE && !r->open && !open_small(r, e)) return false;
+    bool at_half = s->size == STEP_SMALL || s->size == STEP_AMID || s->size == STEP_DOWN;
+    bool reads_half = s->size == STEP_SMALL || s->size == STEP_UP;
+    pass_context *c = at_half ? &r->small : r->whole;
+    const pass_context *from = reads_half ? &r->small : r->whole;
     return are_there(from, s->reads, s->pass, "reads", e) &&
-           (s->size == STEP_UP ? pass_upsample(c, from, s->writes, e) : s->run(c, s, e)) &&
+           (s->size == STEP_UP     ? pass_upsample(c, from, s->writes, e)
+            : s->size == STEP_DOWN ? pass_downsample(c, from, s->writes, e)
+                                   : s->run(c, s, e)) &&
            are_there(c, s->writes, s->pass, "did not make", e);
 }
 
@@ -114,7 +120,7 @@ bool filter_prepare(const job *j, frame_result *r, error *e)
 {
     if (!r->prepared) r->uncovered = !needs_coverage(&r->gb);
     r->prepared = true;
-    return !r->set.half || r->half.depth || halve(j, r, e);
+    return !steps_use_small(&r->plan, &r->set) || r->half.depth || halve(j, r, e);
 }
 
 void filter_list(const frame_result *r, bool suns, step_list *out)
@@ -122,7 +128,8 @@ void filter_list(const frame_result *r, bool suns, step_list *out)
     image_set given = steps_given(&r->gb);
     bool uncovered = r->prepared ? r->uncovered : !needs_coverage(&r->gb);
     if (uncovered) given &= ~IMAGE_BIT(IMAGE_COVERAGE);
-    steps_make(&(step_facts){&r->plan, &r->set, given, r->proxies.count > 0, suns}, out);
+    bool lone = !r->prepared || r->lone.count > 0;
+    steps_make(&(step_facts){&r->plan, &r->set, given, r->proxies.count > 0, suns, lone}, out);
 }
 
 static bool list_steps(const job *j, pass_context *c, frame_result *r, error *e)
@@ -164,12 +171,8 @@ bool filter_begin(job *j, frame_result *r, error *e)
         .stop = j->stop,
         .set = r->set,
         .want_diffuse = p->layers & 1u << LAYER_DIFFUSE,
-        .want_bent = p->want_bent,
-        .want_error = p->want_error,
-        .want_indirect = steps_bounce_within(p, &r->set),
-        .want_radiance = p->want_radiance,
-        .want_visibility = p->want_visibility && method_makes(p->method, MAKES_LIGHT),
         .gb = &gb,
+        .lone = &r->lone,
         .env = j->env_loaded ? &j->env : NULL,
         .environment = j->env_image,
         .views = j->views,
@@ -192,6 +195,7 @@ bool filter_begin(job *j, frame_result *r, error *e)
     r->gl = gpu_counts_since(&j->g, &before);
     pass_end(&c);
     gbuffer_free(&r->half);
+    pixel_list_free(&r->lone);
     return ok;
 }
 

@@ -193,6 +193,7 @@ static void free_view(frame_result *r)
     }
     read_back_drop(r);
     gbuffer_free(&r->half);
+    pixel_list_free(&r->lone);
     for (int k = 0; k < SH_IMAGES; k++) free(r->relight_sh[k]);
     proxies_free(&r->proxies);
     gbuffer_free(&r->gb);

@@ -3,6 +3,7 @@
 #define SSDO_PIPELINE_FRAME_H
 
 #include "gbuffer/gbuffer.h"
+#include "gbuffer/half.h"
 #include "passes/pass.h"
 #include "pipeline/job.h"
 #include "pipeline/plan.h"
@@ -44,7 +45,8 @@ typedef struct frame_result {
     float *relight_sh[SH_IMAGES];   // --from-sh: what the input brought along, else NULL
     bool prepared;                  // by filter_prepare
     bool uncovered;                 // the coverage says nothing that the depth does not
-    gbuffer half;                   // set.half: the frame at half its size, until the passes have run
+    gbuffer half;                   // the frame at half its size, until the passes have run
+    pixel_list lone;                // its pixels that `half` does not show, as long as that
     bool second_part;               // our layers went into a part of their own
     const char *view;               // the stereo view this is, the file's string; NULL without views
     struct frame_result *next_view; // owned; shares the file

@@ -111,8 +111,8 @@ static bool check_adaptive(const method *m, const options *o, error *e)
     if (!method_makes(m, MAKES_ERROR))
         return err_set(e, ERR_USAGE, NULL, NULL, "--error works with the methods %s, not with %s; give it a number of --samples",
                        able, m->name);
-    if (o->half == 1)
-        return err_set(e, ERR_USAGE, NULL, NULL, "--error works at full resolution; leave --resolution half or --error away");
+    if (o->resolution > RESOLUTION_FULL)
+        return err_set(e, ERR_USAGE, NULL, NULL, "--error works at full resolution; leave --resolution or --error away");
     if (o->samples > 0 && o->samples < ROUNDS_LEAST_SAMPLES)
         return err_set(e, ERR_USAGE, NULL, NULL, "--samples must be at least %d with --error, which starts with as many",
                        ROUNDS_LEAST_SAMPLES);

@@ -108,6 +108,24 @@ static int samples_at(const method *m, int quality)
     return quality < 0 ? m->samples / 4 : quality > 0 ? m->samples * 4 : m->samples;
 }
 
+static estimate_size size_of(const job *j, const frame_result *r)
+{
+    const options *o = j->o;
+    if (r->plan.from_sh || o->error > 0.0)
+        return SIZE_FULL; // stored layers are whole already, and so are the tiles of the rounds
+    switch (o->resolution) {
+    case RESOLUTION_FULL:
+        return SIZE_FULL;
+    case RESOLUTION_LIGHT:
+        return SIZE_LIGHT;
+    case RESOLUTION_HALF:
+        return SIZE_HALF;
+    case RESOLUTION_BY_QUALITY:
+        break;
+    }
+    return o->quality < 0 ? SIZE_HALF : o->quality > 0 ? SIZE_FULL : SIZE_LIGHT;
+}
+
 pass_settings settings_of(const job *j, const frame_result *r, shot_facts shot)
 {
     const options *o = j->o;
@@ -120,8 +138,7 @@ pass_settings settings_of(const job *j, const frame_result *r, shot_facts shot)
         .thickness_fixed = o->thickness >= 0.0,
         .planes = !o->no_planes,
         .outside = shot.outside,
-        .half =
-            (o->half < 0 ? o->quality < 0 : o->half) && !r->plan.from_sh && o->error <= 0.0, // stored layers are whole already
+        .size = size_of(j, r),
         .samples = o->samples > 0 && o->error <= 0.0 ? o->samples : samples_at(m, o->error > 0.0 ? 0 : o->quality),
         .error = o->error,
         .most_samples = o->samples > 0 ? o->samples : ROUNDS_MOST_SAMPLES,

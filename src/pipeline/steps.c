@@ -14,7 +14,7 @@ typedef struct builder {
     image_set whole, small; // that are there
 } builder;
 
-static image_set *there(builder *b, step_size size) { return size == STEP_SMALL ? &b->small : &b->whole; }
+static image_set *there(builder *b, step_size size) { return size == STEP_WHOLE || size == STEP_UP ? &b->whole : &b->small; }
 
 static void add(builder *b, plan_step s)
 {
@@ -27,6 +27,14 @@ static void add(builder *b, plan_step s)
 // ---- how they run
 
 static bool run_pass(pass_context *c, const plan_step *s, error *e) { return s->call(c, e); }
+
+static bool run_method(pass_context *c, const plan_step *s, error *e)
+{
+    c->want_bent = s->writes & BIT(BENT), c->want_error = s->writes & BIT(ERROR);
+    c->want_radiance = s->writes & BIT(RADIANCE), c->want_visibility = s->writes & BIT(VISIBILITY);
+    c->want_indirect = s->writes & BIT(INDIRECT);
+    return s->call(c, e);
+}
 
 static gpu_image *if_written(pass_context *c, const plan_step *s, image_id id)
 {
@@ -56,11 +64,28 @@ bool steps_split_suns(const plan *p)
     return method_makes(p->method, MAKES_LIGHT_WITHOUT_SUNS) && (p->want_radiance || p->want_visibility);
 }
 
+static bool has_own_bounce(const plan *p) { return p->bounce && p->estimator == p->method->bounce; }
+
 bool steps_bounce_within(const plan *p, const pass_settings *set)
 {
-    if (!p->bounce || p->estimator != p->method->bounce) return false;
+    if (!has_own_bounce(p)) return false;
     if (p->estimator->march == BOUNCE_WITH_METHOD) return true;
     return p->estimator->march == BOUNCE_WITH_PICTURE && !set->relight && (p->want_radiance || p->want_visibility);
+}
+
+bool steps_use_small(const plan *p, const pass_settings *set)
+{
+    if (set->size != SIZE_LIGHT) return set->size == SIZE_HALF;
+    return p->method->run_light && (p->want_radiance || p->want_visibility || has_own_bounce(p));
+}
+
+// As run_method; the method's light of single pixels.
+static bool run_refine(pass_context *c, const plan_step *s, error *e)
+{
+    c->at_lone = true;
+    bool ok = run_method(c, s, e);
+    c->at_lone = false;
+    return ok;
 }
 
 static image_set vector_of(const pass_settings *set)
@@ -87,22 +112,53 @@ static image_set made_by(const step_facts *f)
 // What surfaces send: the picture that the renderer lit, or our own radiance by their albedo.
 static image_set senders(const pass_settings *set) { return set->relight ? BIT(RADIANCE) | BIT(ALBEDO) : BIT(BEAUTY); }
 
-static void add_method(builder *b, step_size size)
+// Beside depth and normal, for a march that makes `made`.
+static image_set read_for(const step_facts *f, image_set made)
+{
+    bool gathers = made & BIT(INDIRECT) && f->plan->estimator->march == BOUNCE_WITH_PICTURE;
+    return BIT(DEPTH) | BIT(NORMAL) | (gathers ? senders(f->set) : 0);
+}
+
+static void add_method(builder *b, step_size size, image_set made)
 {
     const step_facts *f = b->f;
     const plan *p = f->plan;
-    image_set reads = BIT(DEPTH) | BIT(NORMAL);
-    if (steps_bounce_within(p, f->set) && p->estimator->march == BOUNCE_WITH_PICTURE) reads |= senders(f->set);
     const char *why = p->from_sh            ? "its SH layers are read from the file"
                       : f->set->error > 0.0 ? "occlusion is always made, in rounds until its error is small enough"
                                             : "occlusion is always made";
     add(b, (plan_step){.pass = p->method->name,
                        .why = why,
                        .size = size,
-                       .reads = reads,
-                       .writes = made_by(f),
-                       .run = run_pass,
+                       .reads = read_for(f, made),
+                       .writes = made,
+                       .run = run_method,
                        .call = p->method->run});
+}
+
+// What the method's march of light makes, where that march is one of its own.
+static void add_method_light(builder *b, image_set made)
+{
+    const step_facts *f = b->f;
+    if (made)
+        add(b, (plan_step){.pass = "light",
+                           .why = "on a quarter of the pixels",
+                           .size = STEP_AMID,
+                           .reads = read_for(f, made),
+                           .writes = made,
+                           .run = run_method,
+                           .call = f->plan->method->run_light});
+}
+
+static void add_refining(builder *b, image_set made)
+{
+    const step_facts *f = b->f;
+    if (made && f->lone)
+        add(b, (plan_step){.pass = "refine",
+                           .why = "light of pixels whose surface the smaller frame does not show",
+                           .reads = read_for(f, made) | made,
+                           .writes = made,
+                           .run = run_refine,
+                           .call = made & LIGHT ? f->plan->method->run_light : f->plan->estimator->run});
 }
 
 static void add_blur(builder *b, step_size size, image_set images)
@@ -140,15 +196,14 @@ static image_set of_groups(image_set images, unsigned groups)
     return images;
 }
 
-static void add_light(builder *b, step_size size)
+static void add_light(builder *b)
 {
     const step_facts *f = b->f;
     const plan *p = f->plan;
-    image_set *have = there(b, size), light = *have & LIGHT;
+    image_set *have = &b->whole, light = *have & LIGHT;
     if (f->suns)
         add(b, (plan_step){.pass = "suns",
                            .why = "small bright sources of the environment",
-                           .size = size,
                            .reads = light,
                            .writes = light,
                            .run = run_pass,
@@ -157,7 +212,6 @@ static void add_light(builder *b, step_size size)
     if (f->proxies)
         add(b, (plan_step){.pass = "proxies",
                            .why = "--proxies: spheres that the camera does not see",
-                           .size = size,
                            .reads = blocked,
                            .writes = blocked,
                            .run = run_pass,
@@ -166,14 +220,12 @@ static void add_light(builder *b, step_size size)
     if (p->tone)
         add(b, (plan_step){.pass = "tone",
                            .why = "scale, contrast and the bounds of a scalar method",
-                           .size = size,
                            .reads = scalars,
                            .writes = scalars,
                            .run = run_tone});
     if (p->irradiance)
         add(b, (plan_step){.pass = "irradiance",
                            .why = "the method gives no direction: SH irradiance x occlusion",
-                           .size = size,
                            .reads = BIT(OCCLUSION),
                            .writes = BIT(RADIANCE),
                            .run = run_pass,
@@ -193,10 +245,10 @@ static void add_bounce(builder *b, step_size size)
                            .writes = BIT(INDIRECT),
                            .run = run_pass,
                            .call = p->estimator->run});
-    if (f->set->blur > 0 && !p->estimator->exact) add_blur(b, size, BIT(INDIRECT));
+    if (f->set->blur > 0 && !p->estimator->exact) add_blur(b, size == STEP_AMID ? STEP_SMALL : size, BIT(INDIRECT));
 }
 
-// ---- from half the size
+// ---- at half the size
 
 static void add_upsampling(builder *b, image_set which)
 {
@@ -204,27 +256,55 @@ static void add_upsampling(builder *b, image_set which)
     for (int i = 0; i < IMAGE_COUNT; i++)
         if (image_table[i].resampled != AS_NOTHING) images |= IMAGE_BIT(i) & which & b->small & ~b->whole;
     if (images)
-        add(b, (plan_step){.pass = "upsample", .why = "--resolution half", .size = STEP_UP, .reads = images, .writes = images});
+        add(b, (plan_step){.pass = "upsample", .why = "--resolution", .size = STEP_UP, .reads = images, .writes = images});
 }
 
-static void add_at_half(builder *b)
+// The method's light and its own bounce see the whole frame from a quarter of the pixels. All else is as at full size.
+static void add_light_at_half(builder *b)
+{
+    const image_set light = LIGHT | BIT(INDIRECT), made = made_by(b->f);
+    add_method(b, STEP_WHOLE, made & ~light);
+    add_filters(b, STEP_WHOLE);
+    add_method_light(b, made & light);
+    add_filters(b, STEP_SMALL);
+    if (made & BIT(INDIRECT)) add_bounce(b, STEP_AMID);
+    add_upsampling(b, ~0u);
+    add_refining(b, made & light);
+    add_light(b);
+    if (made & BIT(INDIRECT)) return;
+    bool own = has_own_bounce(b->f->plan);
+    add_bounce(b, own ? STEP_AMID : STEP_WHOLE);
+    add_upsampling(b, BIT(INDIRECT));
+    if (own) add_refining(b, BIT(INDIRECT));
+}
+
+// All layers go up together, unless the bounce needs what is done to the light at full size.
+static void add_all_at_half(builder *b)
 {
     const step_facts *f = b->f;
     const plan *p = f->plan;
-    b->small = steps_given_small(p, f->set, f->given);
-    add_method(b, STEP_SMALL);
+    bool lit_later = p->bounce && f->set->relight && (p->tone || p->irradiance || f->proxies || f->suns);
+    add_method(b, STEP_SMALL, made_by(f));
     add_filters(b, STEP_SMALL);
-    // All layers go up together, unless the bounce needs what is done to them at either size.
-    if (p->bounce && f->set->relight && (p->tone || p->irradiance || f->proxies || f->suns)) {
-        add_upsampling(b, ~0u);
-        add_light(b, STEP_SMALL);
-        add_bounce(b, STEP_SMALL);
-        add_upsampling(b, BIT(INDIRECT));
-    } else {
-        add_bounce(b, STEP_SMALL);
-        add_upsampling(b, ~0u);
-    }
-    add_light(b, STEP_WHOLE);
+    if (!lit_later) add_bounce(b, STEP_SMALL);
+    add_upsampling(b, ~0u);
+    add_light(b);
+    if (!lit_later) return;
+    add(b, (plan_step){.pass = "downsample",
+                       .why = "the light that the bounce gathers",
+                       .size = STEP_DOWN,
+                       .reads = BIT(RADIANCE),
+                       .writes = BIT(RADIANCE)});
+    add_bounce(b, STEP_SMALL);
+    add_upsampling(b, BIT(INDIRECT));
+}
+
+static void add_at_full(builder *b)
+{
+    add_method(b, STEP_WHOLE, made_by(b->f));
+    add_filters(b, STEP_WHOLE);
+    add_light(b);
+    add_bounce(b, STEP_WHOLE);
 }
 
 // ---- what follows at full size
@@ -314,7 +394,10 @@ static void list_missing(const step_facts *f, step_list *l)
     add_missing(l, "proxies", "no spheres are given");
     add_missing(l, "tone", "scale and contrast are 1");
     add_missing(l, "bounce", p->bounce ? "the method's own march makes it" : p->why_no_bounce);
+    add_missing(l, "light", light ? "made beside the occlusion, or not needed" : "the method has no march of light");
+    add_missing(l, "refine", "no light is made at half size, or it shows the surface of every pixel");
     add_missing(l, "upsample", "all is made at full size");
+    add_missing(l, "downsample", "nothing at half size needs what is made at full size");
     add_missing(l, "edges", "every pixel with a share of a surface has one recorded");
     add_missing(l, "specular", p->why_no_specular);
     for (int i = 0; i < LAYER_COUNT; i++)
@@ -332,12 +415,13 @@ image_set steps_given(const gbuffer *gb)
     return given;
 }
 
-// What the bounce gathers; nothing else at half size looks at colours.
+// Colours are looked at only by a bounce that gathers at half size.
 image_set steps_given_small(const plan *p, const pass_settings *set, image_set given)
 {
     image_set looked_at = BIT(DEPTH) | BIT(NORMAL);
-    if (p->bounce) looked_at |= BIT(ALBEDO);
-    if (p->bounce && !set->relight) looked_at |= BIT(BEAUTY);
+    bool gathers = p->bounce && set->size == SIZE_HALF;
+    if (gathers) looked_at |= BIT(ALBEDO);
+    if (gathers && !set->relight) looked_at |= BIT(BEAUTY);
     return given & looked_at;
 }
 
@@ -345,13 +429,11 @@ void steps_make(const step_facts *f, step_list *out)
 {
     out->count = 0;
     builder b = {.f = f, .list = out, .whole = f->given};
-    if (f->set->half) {
-        add_at_half(&b);
+    if (steps_use_small(f->plan, f->set)) {
+        b.small = steps_given_small(f->plan, f->set, f->given);
+        (f->set->size == SIZE_LIGHT ? add_light_at_half : add_all_at_half)(&b);
     } else {
-        add_method(&b, STEP_WHOLE);
-        add_filters(&b, STEP_WHOLE);
-        add_light(&b, STEP_WHOLE);
-        add_bounce(&b, STEP_WHOLE);
+        add_at_full(&b);
     }
     add_rest(&b);
     list_missing(f, out);

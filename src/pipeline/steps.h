@@ -11,7 +11,9 @@
 typedef enum step_size {
     STEP_WHOLE,
     STEP_SMALL, // on the frame of half the size
+    STEP_AMID,  // there, seeing the whole
     STEP_UP,    // from that to the whole
+    STEP_DOWN,  // from the whole to that
 } step_size;
 
 typedef struct plan_step {
@@ -19,7 +21,7 @@ typedef struct plan_step {
     bool runs;
     const char *why; // it runs, or not
     step_size size;
-    image_set reads, writes; // of the smaller frame where it brings them up: reads
+    image_set reads, writes; // of the smaller frame: what STEP_SMALL and STEP_UP read, what STEP_SMALL, _AMID, _DOWN write
     bool (*run)(pass_context *c, const struct plan_step *s, error *e);
     bool (*call)(pass_context *c, error *e); // what run_pass calls; NULL for others
 } plan_step;
@@ -37,6 +39,7 @@ typedef struct step_facts {
     image_set given; // by the G-buffer
     bool proxies;    // there are spheres
     bool suns;       // the environment has suns, which have been taken out of it
+    bool lone;       // some pixels have a surface that the frame of half the size does not show
 } step_facts;
 
 // The steps that run, in order, and after them the passes that do not.
@@ -46,6 +49,8 @@ void steps_make(const step_facts *f, step_list *out);
 image_set steps_given(const gbuffer *gb);
 image_set steps_given_small(const plan *p, const pass_settings *set, image_set given);
 
+// Whether some run on the frame of half the size.
+bool steps_use_small(const plan *p, const pass_settings *set);
 // Whether the method's light leaves the environment's suns to pass_suns.
 bool steps_split_suns(const plan *p);
 // Whether the method's own march makes the bounce too.

@@ -26,7 +26,7 @@ pass_settings bench_settings(const bench_row *row, const bench_scene *b)
     set.seed = row->seed;
     set.blur = row->blur;
     set.planes = !row->no_planes;
-    set.half = row->half;
+    set.size = row->half ? SIZE_HALF : SIZE_FULL;
     if (row->lights > 0) set.vpl_count = row->lights;
     set.sh_bands = row->sh_bands;
     set.scale = row->scale;

@@ -254,7 +254,7 @@ static void one_march_makes_the_layers_of_two(void **state)
     for (int half = 0; half < 2; half++) {
         frame_result both, sky, bounce;
         pass_settings set = rig_settings(method_find("arc"), s.radius);
-        set.planes = true, set.relight = false, set.half = half, set.blur = 3;
+        set.planes = true, set.relight = false, set.size = half ? SIZE_HALF : SIZE_FULL, set.blur = 3;
         lit.options.bounce = dark.options.bounce = "arc";
         must(rig_run(&lit, &gb, method_find("arc"), &set, SKY | BOUNCE | VISIBILITY, &both, &e), &e);
         must(rig_run(&lit, &gb, method_find("arc"), &set, SKY | VISIBILITY, &sky, &e), &e);

@@ -50,7 +50,7 @@ static void empty_plane_gives_the_normal(void **state)
                 view v = kind == 1 ? view_orthographic(61, 40, 12.0, 1.0) : view_perspective(61, 40, 60.0, 1.0);
                 gbuffer gb = shoot(&s, &v);
                 pass_settings set = rig_settings(m, 1.0);
-                set.samples = 16, set.half = kind == 2, set.blur = kind;
+                set.samples = 16, set.size = kind == 2 ? SIZE_HALF : SIZE_FULL, set.blur = kind;
                 must(rig_run(&r, &gb, m, &set, BENT, &out, &e), &e);
                 for (int i = 0; i < 61 * 40; i++)
                     assert_near3(at(out.layers[LAYER_BENT], i), gb.depth[i] > 0.0f ? normal_of(&gb, i) : v3(0, 0, 0), 1e-6);

@@ -14,7 +14,7 @@
 #include "method_fixture.h"
 #include "must.h"
 
-enum { PIXELS = 300, WIDTH = 128, HEIGHT = 88, MOST = 1024 };
+enum { PIXELS = 300, WIDTH = 96, HEIGHT = 66, MOST = 1024 };
 
 static void fixture_make(fixture *f, const listed_scene *from)
 {

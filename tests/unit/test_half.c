@@ -1,4 +1,4 @@
-// --resolution half: the small frame, and what comes back from it.
+// --resolution half and light: the small frame, and what comes back from it.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -111,16 +111,17 @@ static void empty_plane_stays_open(void **state)
     for (const method *m = method_next(NULL, SEES_PICTURE); m; m = method_next(m, SEES_PICTURE))
         for (size_t t = 0; t < sizeof tilts / sizeof *tilts; t++)
             for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
-                for (int orthographic = 0; orthographic < 2; orthographic++) {
+                for (int kind = 0; kind < 4; kind++) {
                     scene s = {0};
                     error e = {0};
                     frame_result out;
+                    bool orthographic = kind % 2;
                     int w = sizes[k][0], h = sizes[k][1];
                     scene_tilted_plane(&s, tilts[t], 10.0);
                     view v = orthographic ? view_orthographic(w, h, 12.0, 1.0) : view_perspective(w, h, 45.0, 1.0);
                     gbuffer gb = shoot(&s, &v);
                     pass_settings set = rig_settings(m, 1.0);
-                    set.samples = 16, set.blur = 3, set.half = true;
+                    set.samples = 16, set.blur = 3, set.size = kind < 2 ? SIZE_HALF : SIZE_LIGHT;
                     must(rig_run(&r, &gb, m, &set, LIGHT, &out, &e), &e);
                     for (int i = 0; i < w * h; i++) {
                         if (out.layers[LAYER_OCCLUSION][i] != 1.0f)
@@ -150,7 +151,7 @@ static void is_near_the_full_result(void **state)
         set.samples = 64, set.blur = 4, set.thickness = 0.3 * set.radius;
         r.options.bounce = m->bounce ? m->bounce->name : NULL;
         must(rig_run(&r, &gb, m, &set, layers, &full, &e), &e);
-        set.half = true;
+        set.size = SIZE_HALF;
         must(rig_run(&r, &gb, m, &set, layers, &half, &e), &e);
         double square = 0.0, contrast = 0.0, mean = 0.0, n = 240 * 160;
         for (int i = 0; i < 240 * 160; i++) {
@@ -185,7 +186,7 @@ static void nothing_bleeds_over_edges(void **state)
     gbuffer gb = shoot(&s, &v);
     const method *m = method_find("bitmask");
     pass_settings set = rig_settings(m, 1.0);
-    set.samples = 128, set.blur = 4, set.half = true;
+    set.samples = 128, set.blur = 4, set.size = SIZE_HALF;
     must(rig_run(&r, &gb, m, &set, 1 << LAYER_OCCLUSION, &out, &e), &e);
     double darkest = 1.0;
     for (int i = 0; i < 151 * 111; i++) {
@@ -194,6 +195,83 @@ static void nothing_bleeds_over_edges(void **state)
     }
     assert_true(darkest < 0.8); // the disc around the box is not open
     rig_free_result(&out);
+    gbuffer_free(&gb);
+    rig_close(&r);
+}
+
+// A pixel stands alone if its surface is not among those that the small pixels around it have taken: of a thin bar before a wall,
+// some; of a plane, none, up to an odd frame's last row.
+static void lone_pixels_are_those_not_shown(void **state)
+{
+    (void)state;
+    for (int orthographic = 0; orthographic < 2; orthographic++)
+        for (int bar = 0; bar < 2; bar++) {
+            scene s = {0};
+            error e = {0};
+            gbuffer small;
+            pixel_list lone, again;
+            scene_tilted_plane(&s, 0.0, 20.0);
+            if (bar) scene_add_box(&s, v3(0.0, 4.0, 0.0), v3(0.02, 0.02, 1.0), 0.0, v3(0.5, 0.5, 0.5));
+            view v = orthographic ? view_orthographic(91, 63, 4.0, 1.3) : view_perspective(91, 63, 45.0, 1.0);
+            gbuffer gb = shoot(&s, &v);
+            must(gbuffer_halve(&gb, 1, &small, &e) && gbuffer_lone(&gb, &small, 1, &lone, &e), &e);
+            must(gbuffer_lone(&gb, &small, 5, &again, &e), &e);
+            assert_int_equal(lone.count > 0, bar);
+            assert_int_equal(lone.count, again.count);
+            for (size_t i = 0; i < lone.count; i++) {
+                int x = (int)(lone.pixels[i] & 0xffffu), y = (int)(lone.pixels[i] >> 16);
+                assert_int_equal(lone.pixels[i], again.pixels[i]);
+                assert_true(x < 91 && y < 63 && gb.depth[y * 91 + x] > 0.0f);
+                // No small pixel near by is as near as this one, or none as far.
+                int alike = 0;
+                for (int k = 0; k < 4; k++) {
+                    int sx = (x + 2 * (k & 1) - 1) / 2, sy = (y + 2 * (k >> 1) - 1) / 2;
+                    if (sx < small.width && sy < small.height)
+                        alike += fabsf(small.depth[sy * small.width + sx] - gb.depth[y * 91 + x]) < 1.0f;
+                }
+                assert_true(alike < 4);
+            }
+            pixel_list_free(&lone);
+            pixel_list_free(&again);
+            gbuffer_free(&small);
+            gbuffer_free(&gb);
+        }
+}
+
+static double rms(const float *a, const float *b, size_t n)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++) sum += ((double)a[i] - (double)b[i]) * ((double)a[i] - (double)b[i]) / (double)n;
+    return sqrt(sum);
+}
+
+// Light at half size leaves occlusion and bent as they are, to the bit, and its own layers are near those at full size: nearer
+// than with all at half size.
+static void light_alone_is_halved(void **state)
+{
+    (void)state;
+    enum { W = 240, H = 160 };
+    rig r;
+    error e = {0};
+    frame_result out[3];
+    open_white(&r);
+    gbuffer gb = clutter(W, H);
+    pass_settings set = rig_settings(method_find("arc"), clutter_radius());
+    set.blur = 4, set.thickness = 0.3 * set.radius;
+    r.options.bounce = "arc";
+    for (int size = SIZE_FULL; size <= SIZE_HALF; size++) {
+        set.size = (estimate_size)size;
+        must(rig_run(&r, &gb, method_find("arc"), &set, BOUNCE | 1 << LAYER_BENT, &out[size], &e), &e);
+    }
+    assert_memory_equal(out[SIZE_FULL].layers[LAYER_OCCLUSION], out[SIZE_LIGHT].layers[LAYER_OCCLUSION], sizeof(float) * W * H);
+    assert_memory_equal(out[SIZE_FULL].layers[LAYER_BENT], out[SIZE_LIGHT].layers[LAYER_BENT], sizeof(float) * 3 * W * H);
+    for (int l = LAYER_RADIANCE; l <= LAYER_INDIRECT; l++) {
+        double light = rms(out[SIZE_FULL].layers[l], out[SIZE_LIGHT].layers[l], 3 * W * H);
+        double half = rms(out[SIZE_FULL].layers[l], out[SIZE_HALF].layers[l], 3 * W * H);
+        print_message("%s: rms difference %.4f, with all at half size %.4f\n", layer_table[l]->name, light, half);
+        assert_true(light > 0.0 && light < half);
+    }
+    for (int i = 0; i < 3; i++) rig_free_result(&out[i]);
     gbuffer_free(&gb);
     rig_close(&r);
 }
@@ -208,17 +286,20 @@ static void same_bits_for_any_threads(void **state)
     gbuffer gb = clutter(151, 97);
     const method *m = method_find("arc");
     pass_settings set = rig_settings(m, clutter_radius());
-    set.blur = 4, set.half = set.planes = true;
+    set.blur = 4, set.planes = true;
     r.options.bounce = "arc";
-    r.job.threads = 1;
-    must(rig_run(&r, &gb, m, &set, BOUNCE, &a, &e), &e);
-    r.job.threads = 5;
-    must(rig_run(&r, &gb, m, &set, BOUNCE, &b, &e), &e);
-    assert_memory_equal(a.layers[LAYER_OCCLUSION], b.layers[LAYER_OCCLUSION], sizeof(float) * 151 * 97);
-    assert_memory_equal(a.layers[LAYER_RADIANCE], b.layers[LAYER_RADIANCE], sizeof(float) * 3 * 151 * 97);
-    assert_memory_equal(a.layers[LAYER_INDIRECT], b.layers[LAYER_INDIRECT], sizeof(float) * 3 * 151 * 97);
-    rig_free_result(&a);
-    rig_free_result(&b);
+    for (int size = SIZE_LIGHT; size <= SIZE_HALF; size++) {
+        set.size = (estimate_size)size;
+        r.job.threads = 1;
+        must(rig_run(&r, &gb, m, &set, BOUNCE, &a, &e), &e);
+        r.job.threads = 5;
+        must(rig_run(&r, &gb, m, &set, BOUNCE, &b, &e), &e);
+        assert_memory_equal(a.layers[LAYER_OCCLUSION], b.layers[LAYER_OCCLUSION], sizeof(float) * 151 * 97);
+        assert_memory_equal(a.layers[LAYER_RADIANCE], b.layers[LAYER_RADIANCE], sizeof(float) * 3 * 151 * 97);
+        assert_memory_equal(a.layers[LAYER_INDIRECT], b.layers[LAYER_INDIRECT], sizeof(float) * 3 * 151 * 97);
+        rig_free_result(&a);
+        rig_free_result(&b);
+    }
     gbuffer_free(&gb);
     rig_close(&r);
 }
@@ -227,9 +308,10 @@ static void same_bits_for_any_threads(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_surface_is_invented),    cmocka_unit_test(the_median_represents),
-        cmocka_unit_test(empty_plane_stays_open),    cmocka_unit_test(is_near_the_full_result),
-        cmocka_unit_test(nothing_bleeds_over_edges), cmocka_unit_test(same_bits_for_any_threads),
+        cmocka_unit_test(no_surface_is_invented),          cmocka_unit_test(the_median_represents),
+        cmocka_unit_test(empty_plane_stays_open),          cmocka_unit_test(is_near_the_full_result),
+        cmocka_unit_test(nothing_bleeds_over_edges),       cmocka_unit_test(same_bits_for_any_threads),
+        cmocka_unit_test(lone_pixels_are_those_not_shown), cmocka_unit_test(light_alone_is_halved),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests_name("half", tests, NULL, NULL);

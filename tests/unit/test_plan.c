@@ -87,7 +87,7 @@ static pass_settings settings_for(const plan *p, const options *o)
                            .error = o->error,
                            .blur = o->blur < 0 ? p->method->blur : o->blur,
                            .sh_bands = o->sh_bands,
-                           .half = o->half == 1,
+                           .size = o->resolution > RESOLUTION_FULL ? (estimate_size)o->resolution : SIZE_FULL,
                            .relight = p->relight};
 }
 
@@ -117,7 +117,7 @@ static const plan_step *step_named(const step_list *l, const char *pass)
 // Every picture that a step reads is there before it, at its size, and what is asked for is there in the end.
 static void pictures_flow(const plan *p, const step_list *l, const pass_settings *set, image_set given)
 {
-    image_set whole = given, small = set->half ? steps_given_small(p, set, given) : 0;
+    image_set whole = given, small = steps_use_small(p, set) ? steps_given_small(p, set, given) : 0;
     bool ended = false;
     for (int i = 0; i < l->count; i++) {
         const plan_step *s = &l->steps[i];
@@ -125,10 +125,12 @@ static void pictures_flow(const plan *p, const step_list *l, const pass_settings
         if (!s->runs) ended = true;
         if (!s->runs) continue;
         assert_false(ended); // first what runs, then what does not
-        image_set *from = s->size == STEP_WHOLE ? &whole : &small, *to = s->size == STEP_SMALL ? &small : &whole;
+        image_set *from = s->size == STEP_SMALL || s->size == STEP_UP ? &small : &whole;
+        image_set *to = s->size == STEP_WHOLE || s->size == STEP_UP ? &whole : &small;
         if (s->reads & ~*from) fail_msg("%s by %s reads %x, and there is %x", s->pass, p->method->name, s->reads, *from);
-        if (s->size == STEP_UP) assert_int_equal(s->reads, s->writes);
-        assert_true(s->writes && (s->size == STEP_UP || s->run));
+        bool moves = s->size == STEP_UP || s->size == STEP_DOWN;
+        if (moves) assert_int_equal(s->reads, s->writes);
+        assert_true(s->writes && (moves || s->run));
         *to |= s->writes;
     }
     for (int i = 0; i < LAYER_COUNT; i++) {
@@ -141,15 +143,15 @@ static void pictures_flow(const plan *p, const step_list *l, const pass_settings
 // The plan's decisions are the steps' too, whatever else the frame has.
 static void steps_follow(const plan *p, const options *o)
 {
-    for (int half = 0; half < 2; half++)
+    for (int size = SIZE_FULL; size <= SIZE_HALF; size++)
         for (int more = 0; more < 8; more++) {
             pass_settings set = settings_for(p, o);
             step_list l;
-            bool proxies = more & 1, suns = more & 2 && steps_split_suns(p);
-            set.half = half && o->error <= 0.0 && !p->from_sh;
+            bool proxies = more & 1, lone = more & 4, suns = more & 2 && steps_split_suns(p);
+            set.size = o->error <= 0.0 && !p->from_sh ? (estimate_size)size : SIZE_FULL;
             if (more & 4) set.samples *= 16;
             image_set given = given_by(p);
-            steps_make(&(step_facts){p, &set, given, proxies, suns}, &l);
+            steps_make(&(step_facts){p, &set, given, proxies, suns, lone}, &l);
             pictures_flow(p, &l, &set, given);
             assert_true(step_named(&l, p->method->name)->runs);
             assert_int_equal(step_named(&l, "irradiance")->runs, p->irradiance);
@@ -159,7 +161,11 @@ static void steps_follow(const plan *p, const options *o)
             assert_int_equal(step_named(&l, "depthmask")->runs, p->depthmask);
             assert_int_equal(step_named(&l, "composite")->runs, p->composite);
             assert_int_equal(step_named(&l, "edges")->runs, true);
-            assert_int_equal(step_named(&l, "upsample")->runs, set.half);
+            bool light = set.size == SIZE_LIGHT && p->method->run_light && (p->want_radiance || p->want_visibility || p->bounce);
+            assert_int_equal(step_named(&l, p->method->name)->size, set.size == SIZE_HALF ? STEP_SMALL : STEP_WHOLE);
+            assert_int_equal(step_named(&l, "light")->runs, light && (p->want_radiance || p->want_visibility));
+            assert_int_equal(step_named(&l, "refine")->runs, light && lone);
+            assert_int_equal(step_named(&l, "upsample")->runs, set.size == SIZE_HALF || light);
             assert_int_equal(step_named(&l, "proxies")->runs, proxies);
             assert_int_equal(step_named(&l, "suns")->runs, suns);
         }
@@ -241,13 +247,15 @@ static void every_set_of_layers_flows(void **state)
                 error e;
                 options o = options_of(m, layers, inputs);
                 o.bounce = estimators[lists % 5];
-                o.error = lists % 3 == 0 && method_makes(m, MAKES_ERROR) ? 0.02 : 0.0;
-                o.half = lists % 2;
-                if (o.half == 1) o.error = 0.0;
+                o.error = lists % 6 == 0 && method_makes(m, MAKES_ERROR) ? 0.02 : 0.0;
+                o.resolution = (estimate_resolution)(lists % 3);
+                if (o.resolution > RESOLUTION_FULL) o.error = 0.0;
                 if (!layers[0] || !planned(&o, inputs, &p, &e)) continue;
                 pass_settings s = settings_for(&p, &o);
                 step_list l;
-                steps_make(&(step_facts){&p, &s, given_by(&p), lists % 7 == 0, lists % 4 == 0 && steps_split_suns(&p)}, &l);
+                steps_make(
+                    &(step_facts){&p, &s, given_by(&p), lists % 7 == 0, lists % 4 == 0 && steps_split_suns(&p), lists % 5 == 0},
+                    &l);
                 pictures_flow(&p, &l, &s, given_by(&p));
                 lists++;
             }

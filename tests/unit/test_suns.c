@@ -44,7 +44,7 @@ static pass_settings settings(double radius, bool half)
     set.thickness = 0.3 * radius;
     set.planes = true;
     set.blur = 4;
-    set.half = half;
+    set.size = half ? SIZE_HALF : SIZE_FULL;
     return set;
 }
 

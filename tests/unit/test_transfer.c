@@ -89,12 +89,14 @@ static void layers_are_the_same(void **state)
     static const struct {
         const char *method, *layers, *env;
         double env_scale; // large: halves overflow
-        bool floats, half;
+        bool floats;
+        estimate_resolution resolution;
     } cases[] = {
         {"arc", "occlusion,radiance,indirect,composite,visibility,bent,depthmask,diffuse", "samples/sky_soft.exr", 1e6, false,
-         false},
-        {"s3ho", "sh_0,sh_1,sh_2,sh_3,radiance", "samples/sky_soft.exr", 1.0, true, false},
-        {"ssdo", NULL, NULL, 1.0, false, true},
+         RESOLUTION_FULL},
+        {"s3ho", "sh_0,sh_1,sh_2,sh_3,radiance", "samples/sky_soft.exr", 1.0, true, RESOLUTION_FULL},
+        {"ssdo", NULL, NULL, 1.0, false, RESOLUTION_HALF},
+        {"arc", "occlusion,radiance,indirect,visibility", "samples/sky_soft.exr", 1.0, false, RESOLUTION_LIGHT},
     };
     // A row of one float a pixel is 600 bytes: bands of one row, and of some that do not divide the height.
     static const way ways[] = {{true, 0, 2}, {true, 1, 3}, {true, 20000, 1}, {false, 0, 3}};
@@ -109,7 +111,7 @@ static void layers_are_the_same(void **state)
         o.env_scale = cases[i].env_scale;
         o.outside = 1.0;
         o.output_float = cases[i].floats;
-        o.half = cases[i].half;
+        o.resolution = cases[i].resolution;
         o.sh_bands = 3;
         o.samples = 8;
         make(&usual, &o, &plain);
