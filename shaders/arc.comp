@@ -8,7 +8,7 @@
 //   ROUND:  adds to the sums of the earlier rounds. A later round has as many slices as all rounds before it, and they lie halfway
 //           between those, so that all slices together are evenly spaced
 //   BOUNCE: indirect = sum w (blocked share x light that the nearest blocker sends) / sum w. With EXITANT the sender image is a picture
-//           that the renderer lit. Without, it is light before albedo, and is multiplied by the sender's albedo here
+//           that the renderer lit. Without, it is light before albedo (senders.comp multiplies them)
 // OUTSIDE: not all directions that leave the frame are open (include/outside.glsl); SURROUND: further G-buffers say which
 // RECEIVERS: the pixels are those of a frame of half the size (src/gbuffer/half.h); what they see is the whole frame.
 // LONE: the pixels are those of a list.
@@ -33,11 +33,9 @@ layout(r32f) writeonly uniform image2D scalar_image; // occlusion, or with LIGHT
 layout(rgba32f) writeonly uniform image2D light_image; // radiance or bent
 #endif
 #ifdef BOUNCE
-PICTURE(rgba32f, sender_image);
+#include "include/senders.glsl"
+PICTURE(rgba32f, sender_image); // at the receiver
 layout(rgba32f) writeonly uniform image2D indirect_image;
-#ifndef EXITANT
-PICTURE(rgba32f, albedo_image);
-#endif
 #ifdef OUTSIDE
 PICTURE(rgba32f, outside_image); // one texel: what surfaces outside the frame send
 #endif
@@ -74,12 +72,12 @@ const float UNSEEN = 0.4;
 vec3 unseen = vec3(0.0);
 
 #ifdef BOUNCE
-vec3 sent_by(ivec2 q, bool seen) {
-    vec3 L = seen ? FETCH_INSIDE(sender_image, q, vec4(0.0)).rgb : unseen;
-#ifndef EXITANT
-    L *= FETCH_INSIDE(albedo_image, q, vec4(0.0)).rgb;
+vec3 sent_by(uvec2 stored, bool seen) {
+#ifdef EXITANT
+    return seen ? sender_light(stored) : unseen;
+#else
+    return seen ? sender_light(stored) : unseen * sender_albedo(stored);
 #endif
-    return L;
 }
 #endif
 

@@ -4,7 +4,11 @@
 // from its lowest share to its highest. Its back counts too; it lies `thickness` behind the front on the view ray. The run that starts at
 // the receiver blocks everything between its highest point and the tangent, so its highest share is 1 from the start.
 
+#ifdef BOUNCE
+UPICTURE(rgba32ui, surface_image); // senders.comp
+#else
 UPICTURE(rg32ui, surface_image); // surface.comp
+#endif
 
 // In a march without a radius, the last run goes on beyond the frame for this multiple of the length that is seen of it. Ground that no
 // plane holds gets the second value: it sends light from wherever its tangent leads.
@@ -87,7 +91,7 @@ void see(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, ivec2 q, fl
 // Takes the sample at distance `at`; the sample before lies at `before`.
 void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at, float before) {
     ivec2 q = ivec2(k.line.origin + at * k.line.direction);
-    uvec2 stored_texel = FETCH_INSIDE(surface_image, q, uvec4(0u)).xy;
+    uvec4 stored_texel = FETCH_INSIDE(surface_image, q, uvec4(0u));
     float depth = uintBitsToFloat(stored_texel.x), scale = is_orthographic() ? 1.0 : depth;
     bool surface = depth != 0.0;
     vec3 Q = position_of(q, depth), n = unpack_normal(stored_texel.y), gap = Q - run.point, to = Q - P;
@@ -95,7 +99,7 @@ void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at,
     bool joined = run.alive && surface && min(abs(dot(run.normal, gap)), abs(dot(n, gap))) <= params.tolerance * step_size;
     bool nearer = gap.z < 0.0;
 #ifdef BOUNCE
-    vec3 light = sent_by(q, dot(n, to) < 0.0);
+    vec3 light = sent_by(stored_texel.zw, dot(n, to) < 0.0);
 #endif
     finish(slots, s, k, run, !surface || !nearer, !joined);
     vec2 w = in_slice(s, to), w_in = w;

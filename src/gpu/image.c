@@ -15,6 +15,8 @@ static GLenum transfer_format(GLenum format)
         return GL_RG;
     case GL_RG32UI:
         return GL_RG_INTEGER;
+    case GL_RGBA32UI:
+        return GL_RGBA_INTEGER;
     default:
         return GL_RGBA;
     }
@@ -95,7 +97,7 @@ void gpu_image_download(gpu *g, const gpu_image *image, float *pixels)
 void gpu_image_clear(gpu_image *image, const float value[4])
 {
     const GLuint whole[4] = {(GLuint)value[0], (GLuint)value[1], (GLuint)value[2], (GLuint)value[3]};
-    bool integer = image->format == GL_RG32UI;
+    bool integer = image->format == GL_RG32UI || image->format == GL_RGBA32UI;
     glClearTexImage(image->id, 0, transfer_format(image->format), integer ? GL_UNSIGNED_INT : GL_FLOAT,
                     integer ? (const void *)whole : value);
 }

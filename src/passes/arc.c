@@ -246,6 +246,18 @@ static bool light_outside(pass_context *c, const arc_params *params, const gpu_i
     return pass_run(c, &call, e);
 }
 
+static bool make_senders(pass_context *c, const gpu_image *sender, const gpu_image *albedo, error *e)
+{
+    if (c->image[IMAGE_SENDERS].id) return true; // for the march at the small pixels
+    const pass_call call = {
+        .program = "senders",
+        .variant = sender != albedo ? "ALBEDO" : NULL,
+        .reads = {{"surface_image", &c->image[IMAGE_SURFACE]}, {"sender_image", sender}, {"albedo_image", albedo}},
+        .writes = {{"senders_image", &c->image[IMAGE_SENDERS]}},
+    };
+    return pass_make_image(c, IMAGE_SENDERS, e) && pass_run(c, &call, e);
+}
+
 // Light comes from any distance, so this march has no radius. It makes the sky's light, through the open sectors, and the bounce,
 // from the blocked ones. One march makes both, unless the bounce needs the filtered sky light.
 //
@@ -263,7 +275,7 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
     if (sky && (!pass_split_suns(c, e) || !pass_make_image(c, IMAGE_RADIANCE, e))) return false;
     if (visibility && !pass_make_image(c, IMAGE_VISIBILITY, e)) return false;
     if (bounce && (!light_planes(seen, &params, sender, albedo, e) || !light_outside(seen, &params, sender, albedo, e) ||
-                   !pass_make_image(c, IMAGE_INDIRECT, e)))
+                   !make_senders(seen, sender, albedo, e) || !pass_make_image(c, IMAGE_INDIRECT, e)))
         return false;
     if (sky) c->suns_apart = c->sunless->map.id != 0;
     variant v = arc_variant(seen, "RUNS");
@@ -283,10 +295,9 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
         .variant = v.words,
         .seen = seen,
         .environment = sky && c->suns_apart ? &c->sunless->map : NULL,
-        .reads = {{"surface_image", &seen->image[IMAGE_SURFACE]},
+        .reads = {{"surface_image", &seen->image[bounce ? IMAGE_SENDERS : IMAGE_SURFACE]},
                   {"planes_image", &seen->image[IMAGE_PLANES]},
                   {"sender_image", sender},
-                  {"albedo_image", albedo},
                   {"outside_image", &seen->image[IMAGE_OUTSIDE_LIGHT]},
                   {"rim_image", &seen->image[IMAGE_RIM]},
                   {"surround_image", &seen->image[IMAGE_SURROUND]},
@@ -325,6 +336,7 @@ static const variant_row variants[] = {
                           "RUNS [PLANES] BOUNCE [EXITANT] [OUTSIDE] [SURROUND] [RECEIVERS] [LONE]"},
     {.program = "outside_light", .pattern = ""},
     {.program = "plane_light", .pattern = ""},
+    {.program = "senders", .pattern = "[ALBEDO]"},
     {.program = "suns", .pattern = "[OUTSIDE] [SURROUND]"},
     {.program = "suns_add", .pattern = "[VISIBILITY]"},
     {.program = "surface", .pattern = "[PLANES]"},

@@ -61,5 +61,7 @@ IMAGE(SURFACE, .name = "surface", .format = GL_RG32UI)
 IMAGE(SURROUND, .name = "surround", .format = GL_RG32F)
 // The depth of the opening that a pixel shows the outdoors through; 0: it does not (openings.h).
 IMAGE(RIM, .name = "rim of openings", .format = GL_R32F)
+// The same with the light that surfaces send, for a bounce.
+IMAGE(SENDERS, .name = "senders", .format = GL_RGBA32UI)
 // The light that surfaces outside the frame are taken to send: one texel.
 IMAGE(OUTSIDE_LIGHT, .name = "light of the outside", .format = GL_RGBA32F)
