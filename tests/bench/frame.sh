@@ -63,7 +63,7 @@ echo "| decode of the input, CPU over the library's | $(awk '{ print $1 / $3 }' 
 echo "| encode of the new layers, CPU over the library's | $(awk '{ print $6 / $8 }' "$dir/codec" | median) | 0.3 |" >>"$ratios"
 
 # What accuracy costs: the whole job at several budgets, and the errors that the same settings have on the samples. A draft is 16
-# samples at half resolution, the default 64 at full.
+# samples at half resolution.
 "$build/bench-curve" >"$dir/errors.tsv"
 set -- "oiiotool copy" "oiiotool $in -o $dir/copy.exr"
 while read -r samples resolution _; do
