@@ -10,6 +10,8 @@ PICTURE(rg32f, surround_image);
 const int SURROUND_STEPS = 12, SURROUND_HALVINGS = 4;
 const float SHELL_STEP = 0.2;  // between two directions the shell steps by more than this share: an edge, not a surface
 const float BEYOND = 1.02;     // what is not farther than this lies on the shell
+const float OWN_EYE = 1e-4;    // squared share of the receiver's distance: an eye that near is the frame's own
+const float OFF_SURFACE = 0.05; // radians: before that the receiver's own surface could block it
 const float OUT_OF_SIGHT = 0.3; // how open the directions are, out there, that no eye sees
 
 vec2 shell_at(int view, vec3 direction) { // camera space
@@ -128,8 +130,8 @@ float openness(vec3 V, vec3 across, vec2 at, Exits x) {
 #ifdef SURROUND
     for (int i = 0; i < params.views; i++) {
         vec3 eye = surround_eye(i), P = x.P - eye;
-        bool own = dot(eye, eye) < 1e-4 * dot(x.P, x.P); // only for the frame's own eye the march has looked already
-        float o = leaves_by_opening(i, P, at.x * V + at.y * across, own ? (at.y > 0.0 ? x.right : x.left) : 0.05);
+        bool own = dot(eye, eye) < OWN_EYE * dot(x.P, x.P); // only for the frame's own eye the march has looked already
+        float o = leaves_by_opening(i, P, at.x * V + at.y * across, own ? (at.y > 0.0 ? x.right : x.left) : OFF_SURFACE);
         open = o == 0.0 || open == 0.0 ? 0.0 : max(open, o);
     }
 #endif

@@ -10,7 +10,7 @@
 
 // ---- lat-long cameras
 
-// Half a pixel: positions are sampled within their pixels.
+// Pixels: a renderer samples positions anywhere within theirs.
 static const double MOST_ERROR = 0.75;
 enum { FIT_POINTS = 2048, FIT_LEAST = 50 };
 
@@ -142,32 +142,57 @@ bool latlong_fit(const float *positions, int width, int height, latlong_camera *
 
 // ---- reading
 
-static const double FARTHEST = 1e9; // positions of the background are 0 or far away
+static const double FARTHEST = 1e9;
 static const double ON_RAY = 0.999; // cosine
-
-static plane plane_of(const exrio_file *file, channel_ref ref, box2 window)
-{
-    plane p = {0};
-    if (ref.part < 0) return p;
-    const exrio_part *part = &file->parts[ref.part];
-    const exrio_channel *c = &part->channels[ref.channel];
-    p.data = c->data, p.type = c->type;
-    p.width = box2_width(part->data_window), p.height = box2_height(part->data_window);
-    p.dx = window.x0 - part->data_window.x0, p.dy = window.y0 - part->data_window.y0;
-    return p;
-}
 
 static float *positions_of(const exrio_file *file, const resolution *r, int *width, int *height, error *e)
 {
-    const box2 window = file->parts[r->main_part].data_window;
+    gbuffer frame = {.data_window = file->parts[r->main_part].data_window};
+    const build b = {.file = file, .r = r, .g = &frame};
     plane p[3];
-    *width = box2_width(window), *height = box2_height(window);
-    for (int k = 0; k < 3; k++) p[k] = plane_of(file, r->channels[ROLE_POSITION][k], window);
+    *width = box2_width(frame.data_window), *height = box2_height(frame.data_window);
+    for (int k = 0; k < 3; k++) p[k] = build_plane(&b, ROLE_POSITION, k);
     float *out = mem_pixels((size_t)*width * (size_t)*height, 3 * sizeof *out, e), *to = out;
     for (int y = 0; out && y < *height; y++)
         for (int x = 0; x < *width; x++)
             for (int k = 0; k < 3; k++) *to++ = (float)plane_get(&p[k], x, y);
     return out;
+}
+
+// ---- what shows nothing
+
+bool shows_nothing(pixel_empty_fn is_empty, const void *picture, int x, int y)
+{
+    bool shows = false;
+    for (int k = 0; k < 9; k++) {
+        bool all = true;
+        for (int i = 0; i < 9; i++) all = all && is_empty(picture, x + k % 3 + i % 3 - 2, y + k / 3 + i / 3 - 2);
+        shows = shows || all;
+    }
+    return shows && is_empty(picture, x, y);
+}
+
+bool gbuffer_pixel_empty(const void *gb, int x, int y)
+{
+    const gbuffer *g = gb;
+    if (x < 0 || y < 0 || x >= g->width || y >= g->height) return true;
+    size_t i = (size_t)y * (size_t)g->width + (size_t)x;
+    return g->depth[i] == 0.0f && (!g->coverage || g->coverage[i] == 0.0f);
+}
+
+typedef struct latlong_picture {
+    const float *positions;
+    int width, height;
+    const latlong_camera *camera;
+} latlong_picture;
+
+// Positions of the background are 0, far away or not finite.
+static bool latlong_empty(const void *picture, int x, int y)
+{
+    const latlong_picture *l = picture;
+    if (y < 0 || y >= l->height) return true;
+    vec3 p = point_at(l->positions, l->width, (size_t)((x + l->width) % l->width), (size_t)y);
+    return !is_point(p) || v3_length(v3_sub(p, l->camera->eye)) >= FARTHEST;
 }
 
 static bool make_room(world_view *v, size_t most, error *e)
@@ -190,18 +215,17 @@ static int stride_of(int width, int height, size_t most)
     return stride;
 }
 
-static void take_latlong(const float *positions, int width, int height, const latlong_camera *c, int stride, world_view *v)
+static void take_latlong(const latlong_picture *l, int stride, world_view *v)
 {
-    v->eye = c->eye, v->latlong = true, v->pixel = stride * M_PI / height;
-    for (int y = stride / 2; y < height; y += stride)
-        for (int x = stride / 2; x < width; x += stride) {
-            vec3 p = point_at(positions, width, (size_t)x, (size_t)y), d = latlong_direction(c, width, height, x + 0.5, y + 0.5);
-            double far = v3_length(v3_sub(p, c->eye));
-            bool there = is_point(p) && far < FARTHEST;
-            if (!there)
+    v->eye = l->camera->eye, v->latlong = true, v->pixel = stride * M_PI / l->height;
+    for (int y = stride / 2; y < l->height; y += stride)
+        for (int x = stride / 2; x < l->width; x += stride) {
+            vec3 p = v3_sub(point_at(l->positions, l->width, (size_t)x, (size_t)y), v->eye);
+            vec3 d = latlong_direction(l->camera, l->width, l->height, x + 0.5, y + 0.5);
+            if (shows_nothing(latlong_empty, l, x, y))
                 put(v->empty, &v->empty_count, d);
-            else if (v3_dot(v3_sub(p, c->eye), d) > ON_RAY * far) // else the renderer sampled past an edge
-                put(v->points, &v->point_count, p);
+            else if (!latlong_empty(l, x, y) && v3_dot(p, d) > ON_RAY * v3_length(p)) // else it was sampled past an edge
+                put(v->points, &v->point_count, v3_add(p, v->eye));
         }
 }
 
@@ -216,6 +240,7 @@ static void take_frame(const gbuffer *gb, int stride, world_view *v)
                 put(v->points, &v->point_count, v3_add(c->origin, m3_apply(c->world_from_camera, p)));
                 continue;
             }
+            if (!shows_nothing(gbuffer_pixel_empty, gb, x, y)) continue;
             vec3 ray = v3((x + 0.5 - c->cx) / c->fx, (y + 0.5 - c->cy) / c->fy, 1.0);
             put(v->empty, &v->empty_count, m3_apply(c->world_from_camera, v3_scale(ray, 1.0 / v3_length(ray))));
         }
@@ -237,7 +262,7 @@ bool world_view_read(const exrio_file *file, const resolution *r, const gbuffer_
     if (!positions || !make_room(out, most, e)) goto out;
     int stride = stride_of(width, height, most);
     if (latlong_fit(positions, width, height, &c)) {
-        take_latlong(positions, width, height, &c, stride, out);
+        take_latlong(&(latlong_picture){positions, width, height, &c}, stride, out);
         log_info(log, "%s: a lat-long G-buffer, its eye at %.3g %.3g %.3g, %c up, %.2f pixels off in the median", file->path,
                  c.eye.x, c.eye.y, c.eye.z, c.up == 2 ? 'z' : 'y', c.error);
         ok = true;

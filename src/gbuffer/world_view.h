@@ -22,6 +22,13 @@ bool world_view_read(const exrio_file *file, const resolution *r, const gbuffer_
                      log_t *log, error *e);
 void world_view_free(world_view *v);
 
+// Whether a pixel shows that there is nothing: it is part of an opening of at least 3 x 3 empty pixels. What is narrower may be a
+// crack between two surfaces. Beyond the picture's border all counts as empty.
+typedef bool (*pixel_empty_fn)(const void *picture, int x, int y);
+bool shows_nothing(pixel_empty_fn is_empty, const void *picture, int x, int y);
+// pixel_empty_fn of a gbuffer: no surface, and none that covers the pixel in part.
+bool gbuffer_pixel_empty(const void *gb, int x, int y);
+
 // The eye of a lat-long picture and how its columns turn, from its positions (NaN or all 0: none), width x height x 3: the top
 // row looks along the up axis (2: z, 1: y), the first column at `start` radians about it, the rest by a full turn,
 // counter-clockwise seen from above if `sense` is 1, clockwise if -1. False if the positions are not those of a lat-long camera

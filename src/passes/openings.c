@@ -4,32 +4,11 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "gbuffer/world_view.h"
 
 // A surface is part of a roof if its normal is within 60 degrees of straight down.
 static const double FACES_DOWN = -0.5;
 enum { ROOF_SAMPLES = 20000 }; // about so many pixels are looked at
-
-static bool is_empty(const gbuffer *gb, int x, int y)
-{
-    if (x < 0 || y < 0 || x >= gb->width || y >= gb->height) return true;
-    size_t i = (size_t)y * (size_t)gb->width + (size_t)x;
-    return gb->depth[i] == 0.0f && (!gb->coverage || gb->coverage[i] == 0.0f);
-}
-
-static bool all_empty_around(const gbuffer *gb, int x, int y)
-{
-    bool empty = true;
-    for (int k = 0; k < 9; k++) empty = empty && is_empty(gb, x + k % 3 - 1, y + k / 3 - 1);
-    return empty;
-}
-
-// Part of an opening of at least 3 x 3 pixels. What is narrower may be a crack between two surfaces.
-static bool shows_nothing(const gbuffer *gb, int x, int y)
-{
-    bool shows = false;
-    for (int k = 0; k < 9; k++) shows = shows || all_empty_around(gb, x + k % 3 - 1, y + k / 3 - 1);
-    return shows && is_empty(gb, x, y);
-}
 
 // ---- the outdoors
 
@@ -152,7 +131,7 @@ bool openings_find(const gbuffer *gb, float *rim, error *e)
     for (int y = 0; y < gb->height; y++)
         for (int x = 0; x < gb->width; x++) {
             float z = gb->depth[(size_t)y * (size_t)gb->width + (size_t)x];
-            *to++ = z > 0.0f ? z : shows_nothing(gb, x, y) ? INFINITY : 0.0f;
+            *to++ = z > 0.0f ? z : shows_nothing(gbuffer_pixel_empty, gb, x, y) ? INFINITY : 0.0f;
         }
     bool ok = outdoors_find(depth, gb->width, gb->height, false, rim, e);
     free(depth);
@@ -187,7 +166,7 @@ static bool ends_under_sky(const gbuffer *gb, vec3 point, vec3 up)
     for (int i = 1; i < reach; i++) {
         double at_x = x + i * dx / size, at_y = y + i * dy / size;
         if (!(at_x >= 0.0 && at_y >= 0.0 && at_x < gb->width && at_y < gb->height)) return false;
-        if (is_empty(gb, (int)at_x, (int)at_y)) return true;
+        if (gbuffer_pixel_empty(gb, (int)at_x, (int)at_y)) return true;
     }
     return false;
 }

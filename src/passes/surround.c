@@ -77,13 +77,14 @@ static void add_frame(const maker *m, const gbuffer *gb)
             vec3 p = gbuffer_position(gb, x, y);
             vec3 ray = v3((x + 0.5 - gb->camera.cx) / gb->camera.fx, (y + 0.5 - gb->camera.cy) / gb->camera.fy, 1.0);
             double far = v3_length(p);
+            if (p.z == 0.0 && !shows_nothing(gbuffer_pixel_empty, gb, x, y)) continue;
             vec3 d = p.z > 0.0 ? v3_scale(p, 1.0 / far) : v3_scale(ray, 1.0 / v3_length(ray));
             mark(m->shell, m3_apply(m->map_from_camera, d), pixel, p.z > 0.0 ? (float)far : EMPTY);
         }
 }
 
-// Gaps between the points of a surface that is seen from nearer than it was recorded from: the median is not needed, the nearest
-// neighbour's distance is a surface's too.
+// Gaps of a few texels, as between the points of a perspective view, whose pixels are not the map's: the nearest of the
+// neighbours.
 static void fill(float *shell, float *scratch)
 {
     for (int round = 0; round < FILL_ROUNDS; round++) {

@@ -15,6 +15,7 @@
 #include "gbuffer/world_view.h"
 #include "must.h"
 #include "passes/openings.h"
+#include "passes/surround.h"
 #include "rig.h"
 #include "scene_picture.h"
 #include "truth.h"
@@ -95,6 +96,29 @@ static void openings(void **state)
     }
     assert_true(rim[80 * W + 20] == 0.0f);
     assert_true(shown == empty - 1);
+    gbuffer_free(&gb);
+}
+
+// A crack in a further view, or in the frame, is no opening in the map either.
+static void cracks_are_no_openings(void **state)
+{
+    (void)state;
+    enum { W = 64, H = 36, TEXELS = SURROUND_WIDTH * SURROUND_HEIGHT };
+    error e = {0};
+    scene s = room(true, true);
+    gbuffer gb;
+    static float map[TEXELS + SURROUND_WIDTH][2];
+    int openings[2] = {0};
+    look(&s, W, H, 60.0, &gb);
+    for (int cracked = 0; cracked < 2; cracked++) {
+        world_view v = {.eye = gb.camera.origin};
+        for (int i = 0; cracked && i < 16; i++) gb.depth[30 * W + 8 + 3 * i] = 0.0f;
+        memset(map, 0, sizeof map);
+        must(surround_make(&v, 1, &gb, gb.camera.world_from_camera, 2, map, &e), &e);
+        for (int i = 0; i < TEXELS; i++) openings[cracked] += map[i][0] < 0.0f;
+    }
+    assert_true(openings[0] > 0);
+    assert_int_equal(openings[0], openings[1]);
     gbuffer_free(&gb);
 }
 
@@ -255,6 +279,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(roofs),
         cmocka_unit_test(openings),
+        cmocka_unit_test(cracks_are_no_openings),
         cmocka_unit_test(light_comes_through_the_window),
         cmocka_unit_test(a_closed_place_is_black),
         cmocka_unit_test(latlong_cameras_are_found),
