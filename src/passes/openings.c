@@ -89,12 +89,22 @@ static void take(const grid *g, long cell, float rim, float from, long *queue, l
     queue[(*count)++] = cell;
 }
 
+// The cell beside (x, y), past pixels of which nothing is known, such as those that a horizon crosses: two at most.
+static long known_beside(const grid *g, long cell, int k)
+{
+    for (int i = 0; i < 3 && cell >= 0; i++) {
+        cell = beside(g, (int)(cell % g->width), (int)(cell / g->width), k);
+        if (cell >= 0 && g->depth[cell] != 0.0f) return cell;
+    }
+    return -1;
+}
+
 static void spread(const grid *g, long *queue)
 {
     long count = 0, cells = (long)g->width * g->height;
     for (long i = 0; i < cells; i++)
         for (int k = 0; k < 4 && g->depth[i] == INFINITY; k++) {
-            long other = beside(g, (int)(i % g->width), (int)(i / g->width), k);
+            long other = known_beside(g, i, k);
             if (other >= 0) take(g, other, g->rim[i], 0.0f, queue, &count);
         }
     for (long i = 0; i < count; i++)

@@ -99,6 +99,33 @@ static void openings(void **state)
     gbuffer_free(&gb);
 }
 
+// The ground seen through the window is outdoors too, also where the pixels of its horizon are covered in part.
+static void ground_is_outdoors(void **state)
+{
+    (void)state;
+    enum { W = 160, H = 90 };
+    error e = {0};
+    scene s = room(true, true);
+    gbuffer gb;
+    static float rim[W * H], coverage[W * H];
+    quad(&s, -500, 5.2, -0.3, v3(1000, 0, 0), v3(0, 900, 0));
+    look(&s, W, H, 60.0, &gb);
+    gb.coverage = coverage;
+    for (int i = 0; i < W * H; i++) coverage[i] = gb.depth[i] > 0.0f;
+    for (int i = W; i < W * H; i++) // the first row of the ground
+        if (coverage[i - W] == 0.0f && gb.depth[i] > 50.0f) gb.depth[i] = 0.0f, coverage[i] = 0.5f;
+    must(openings_find(&gb, rim, &e), &e);
+    int ground = 0;
+    for (int i = 0; i < W * H; i++) {
+        if (gb.depth[i] < 8.0f) continue;
+        assert_true(rim[i] > 4.0f && rim[i] < 5.5f);
+        ground++;
+    }
+    assert_true(ground > 100);
+    gb.coverage = NULL;
+    gbuffer_free(&gb);
+}
+
 // A crack in a further view, or in the frame, is no opening in the map either.
 static void cracks_are_no_openings(void **state)
 {
@@ -279,6 +306,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(roofs),
         cmocka_unit_test(openings),
+        cmocka_unit_test(ground_is_outdoors),
         cmocka_unit_test(cracks_are_no_openings),
         cmocka_unit_test(light_comes_through_the_window),
         cmocka_unit_test(a_closed_place_is_black),
