@@ -56,12 +56,12 @@ void main() {
 #ifndef OUTSIDE // the opening that shows the sky may lie beyond the box
         line.reach = way_out(P, S, line);
 #endif
-        Sectors slots = all_open();
-        march(slots, side, line, P, N, noise, 0.5);
+        Sectors sectors = all_open();
+        march(sectors, side, line, P, N, noise, 0.5);
 #ifdef OUTSIDE
-        float open = open_share(~slots.blocked, slots.seen, openness(V, across, vec2(along, sine), exits));
+        float open = open_share(~sectors.blocked, sectors.seen, openness(V, across, vec2(along, sine), exits));
 #else
-        float open = 1.0 - sector_share(slots.blocked);
+        float open = 1.0 - sector_share(sectors.blocked);
 #endif
         light += open * L;
         all += L;

@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.." || exit 2
 old=$1 new=$2 only=${3:-}
 work=${COMPARE_DIR:-/tmp/compare_builds}
 kept=$work/$(cksum <"$old" | tr ' ' -)${COMPARE_FULL:+-full} made=$work/new.$$ inputs=samples
-mkdir -p "$kept" "$made" "$work/cache" "$work/small/proxies" || exit 2
+mkdir -p "$kept" "$made" "$work/cache" "$work/small/proxies" "$work/small/covered" || exit 2
 trap 'rm -rf "$made"' EXIT
 XDG_CACHE_HOME=$work/cache
 export XDG_CACHE_HOME
@@ -19,8 +19,9 @@ jobs=${COMPARE_JOBS:-2}
 # The middle of every block of 3 x 3 pixels, whose centre is the small pixel's.
 if [ -z "${COMPARE_FULL:-}" ]; then
     inputs=$work/small
-    cp samples/sky_*.exr samples/*.obj samples/*.mtl "$inputs" && cp samples/proxies/*.json "$inputs/proxies" || exit 2
-    for s in still box horizon ortho thin proxies/beside; do
+    cp samples/sky_*.exr samples/*.obj samples/*.mtl "$inputs" && cp samples/proxies/*.json "$inputs/proxies" &&
+        cp samples/covered/sky_*.exr "$inputs/covered" || exit 2
+    for s in still box horizon ortho thin proxies/beside covered/room covered/corner; do
         size=$(oiiotool --info samples/$s.exr | sed -n 's/.*: *\([0-9]*\) x *\([0-9]*\).*/\1 \2/p' | head -1)
         [ -e "$inputs/$s.exr" ] || oiiotool samples/$s.exr --resample "$((${size% *} / 3))x$((${size#* } / 3))" -d float -o "$inputs/$s.exr" || exit 2
     done

@@ -5,7 +5,22 @@
 // the receiver blocks everything between its highest point and the tangent, so its highest share is 1 from the start.
 
 #ifdef BOUNCE
+#include "include/senders.glsl"
 UPICTURE(rgba32ui, surface_image); // senders.comp
+
+// The camera does not see the back of a surface, so the light of a back is a guess: it faces the receiver and sees much the same
+// surroundings, so it gets this share of the receiver's own light.
+const float UNSEEN = 0.4;
+vec3 unseen = vec3(0.0); // that light; before albedo if not EXITANT
+
+// Light that a surface sends to the receiver; `seen`: the receiver sees the side that the camera sees.
+vec3 sent_by(uvec2 stored, bool seen) {
+#ifdef EXITANT
+    return seen ? sender_light(stored) : unseen;
+#else
+    return seen ? sender_light(stored) : unseen * sender_albedo(stored);
+#endif
+}
 #else
 UPICTURE(rg32ui, surface_image); // surface.comp
 #endif
@@ -46,7 +61,7 @@ struct Walk {
 };
 
 // Ends a run: blocks what it blocks and its samples have not blocked yet.
-void finish(inout Sectors slots, Side s, Walk k, Run r, bool ends, bool now) {
+void finish(inout Sectors sectors, Side s, Walk k, Run r, bool ends, bool now) {
     float thickness = max(r.width, r.starts && ends ? params.thin : params.thickness);
 #ifdef SUNS
     // A sharp shadow ends where the back is, and the depth of the back is a guess. Every depth up to twice the guess is taken to be equally
@@ -55,16 +70,16 @@ void finish(inout Sectors slots, Side s, Walk k, Run r, bool ends, bool now) {
     for (int i = 0; i < BACKS; i++) {
         float depth = thickness * (params.kappa == 0.0 ? 1.0 : float(2 * i + 1) / float(BACKS));
         float back = share(s, r.rim + depth * away(s, r.rim, r.rim_inverse));
-        mask |= sectors(r.low, max(r.high, back), k.jitter) & (0x11111111u << uint(i));
+        mask |= sectors_between(r.low, max(r.high, back), k.jitter) & (0x11111111u << uint(i));
     }
 #else
     float back = share(s, r.rim + thickness * away(s, r.rim, r.rim_inverse));
-    uvec2 mask = sectors(r.low, max(r.high, back), k.jitter);
+    uvec2 mask = sectors_between(r.low, max(r.high, back), k.jitter);
 #endif
 #ifdef OUTSIDE
-    mask &= sectors(r.low, r.high, k.jitter) | ~slots.seen; // what has left through an opening is past the backs of its frame
+    mask &= sectors_between(r.low, r.high, k.jitter) | ~sectors.seen; // what has left through an opening is past the backs of its frame
 #endif
-    block(slots, now && r.alive && r.low <= r.high ? mask : uvec2(0u), HIDDEN * r.light);
+    block(sectors, now && r.alive && r.low <= r.high ? mask : uvec2(0u), HIDDEN * r.light);
 }
 
 #ifdef OUTSIDE
@@ -74,14 +89,14 @@ PICTURE(r32f, rim_image); // where the outdoors are seen, the depth of the openi
 // that meet this part of the ray are outdoors there, so nothing unseen blocks them: an arc. The further out a ray, the lower its arc, and
 // the directions between two rays of one opening are outdoors too. The opening ends halfway between a sample that shows it and one that
 // does not.
-void see(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, ivec2 q, float depth, float at, float before) {
+void see(inout Sectors sectors, inout Run run, Side s, Walk k, vec3 P, ivec2 q, float depth, float at, float before) {
     float rim = FETCH_INSIDE(rim_image, q, vec4(0.0)).r;
     bool here = rim > 0.0, there = run.rim_depth > 0.0;
     vec2 screen = k.line.origin + (here && there ? at : 0.5 * (before + at)) * k.line.direction;
     float last = here ? depth : run.seen_depth, opening = here ? rim : run.rim_depth;
     vec3 infinity = is_orthographic() ? vec3(0.0, 0.0, 1.0) : ray_at(screen), end = last > 0.0 ? position_at(screen, last) - P : infinity;
     float far = share(s, in_slice(s, end)), near = share(s, in_slice(s, position_at(screen, opening) - P));
-    slots.seen |= here || there ? sectors(near, there ? max(far, run.rim_share) : far, k.jitter) : uvec2(0u);
+    sectors.seen |= here || there ? sectors_between(near, there ? max(far, run.rim_share) : far, k.jitter) : uvec2(0u);
     run.rim_depth = rim;
     run.rim_share = near;
     run.seen_depth = depth;
@@ -89,7 +104,7 @@ void see(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, ivec2 q, fl
 #endif
 
 // Takes the sample at distance `at`; the sample before lies at `before`.
-void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at, float before) {
+void visit(inout Sectors sectors, inout Run run, Side s, Walk k, vec3 P, float at, float before) {
     ivec2 q = ivec2(k.line.origin + at * k.line.direction);
     uvec4 stored_texel = FETCH_INSIDE(surface_image, q, uvec4(0u));
     float depth = uintBitsToFloat(stored_texel.x), scale = is_orthographic() ? 1.0 : depth;
@@ -101,7 +116,7 @@ void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at,
 #ifdef BOUNCE
     vec3 light = sent_by(stored_texel.zw, dot(n, to) < 0.0);
 #endif
-    finish(slots, s, k, run, !surface || !nearer, !joined);
+    finish(sectors, s, k, run, !surface || !nearer, !joined);
     vec2 w = in_slice(s, to), w_in = w;
     bool counts = true;
 #ifdef LIMITED
@@ -114,7 +129,7 @@ void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at,
 #endif
     float c = share(s, w_in);
 #ifdef BOUNCE
-    block(slots, joined ? sectors(min(run.last_share, c), max(run.last_share, c), k.jitter) : uvec2(0u), light);
+    block(sectors, joined ? sectors_between(min(run.last_share, c), max(run.last_share, c), k.jitter) : uvec2(0u), light);
     run.last_share = c;
     run.light = light;
 #endif
@@ -128,7 +143,7 @@ void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at,
     run.high = counts ? max(high, c) : high;
     run.width = params.kappa * (length(w - run.first) + step_size);
 #ifdef OUTSIDE
-    see(slots, run, s, k, P, q, depth, at, before);
+    see(sectors, run, s, k, P, q, depth, at, before);
 #endif
     run.alive = surface;
     run.last = w;
@@ -137,7 +152,7 @@ void visit(inout Sectors slots, inout Run run, Side s, Walk k, vec3 P, float at,
 }
 
 // Beyond the frame the last run goes on along its own tangent.
-void go_on(inout Sectors slots, inout Run run, Side s, Walk k, float at) {
+void go_on(inout Sectors sectors, inout Run run, Side s, Walk k, float at) {
     ivec2 q = ivec2(k.line.origin + at * k.line.direction);
     vec3 n = normal_at(q);
     bool on_plane = (FETCH_INSIDE(surface_image, q, uvec4(0u)).y >> 31u) == 1u;
@@ -161,11 +176,11 @@ void go_on(inout Sectors slots, inout Run run, Side s, Walk k, float at) {
     run.high = counts ? max(run.high, c) : run.high;
 #ifdef BOUNCE
     // Nothing says that the run ends or is hidden there, so this part sends the same light as the part that is seen. Planes often do end.
-    block(slots, counts && !on_plane ? sectors(run.low, run.high, k.jitter) : uvec2(0u), run.light);
+    block(sectors, counts && !on_plane ? sectors_between(run.low, run.high, k.jitter) : uvec2(0u), run.light);
 #endif
 }
 
-void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
+void march(inout Sectors sectors, Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
     Run run = Run(true, false, 2.0, 1.0, 0.0, vec2(0.0), vec2(0.0), vec2(0.0), 0.0, 1.0, 0.0, P, N, vec3(0.0)
 #ifdef OUTSIDE
                   , 0.0, 0.0, 0.0
@@ -176,9 +191,9 @@ void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, float step_ji
     for (int i = 0; i < params.steps; i++) {
         float at = step_distance(i, step_jitter, k.limit);
         if (at > last) break;
-        visit(slots, run, s, k, P, at, before);
+        visit(sectors, run, s, k, P, at, before);
         before = at;
     }
-    go_on(slots, run, s, k, before);
-    finish(slots, s, k, run, false, true);
+    go_on(sectors, run, s, k, before);
+    finish(sectors, s, k, run, false, true);
 }

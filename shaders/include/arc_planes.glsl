@@ -43,7 +43,7 @@ bool stands(int plane, vec3 X, vec2 here, bool beyond_frame, float room) {
     return inside ? supported && behind : beyond_frame && max(abs(here.x), abs(here.y)) <= BELIEVED_PLANE;
 }
 
-void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, Lines lines, vec3 P, float place, float jitter) {
+void block_by_planes(inout Sectors sectors, Side s, vec3 V, vec3 across, float n, Lines lines, vec3 P, float place, float jitter) {
     Border right = border_of(lines.right), left = border_of(lines.left);
     for (int i = 0; i < params.planes; i++) {
         vec4 equation = FETCH(planes_image, ivec2(PLANE_EQUATION, i));
@@ -81,7 +81,7 @@ void block_by_planes(inout Sectors slots, Side s, vec3 V, vec3 across, float n, 
             vec3 X = P + height / dot(normal, d) * (d.x * V + d.y * across);
             vec2 here = vec2(dot(u.xyz, X) - u.w, dot(v.xyz, X) - v.w);
             bool blocks = stands(i, X, here, d.y > 0.0 ? goes_right : goes_left, room);
-            block(slots, blocks ? sectors(c, next, jitter) : uvec2(0u), sent);
+            block(sectors, blocks ? sectors_between(c, next, jitter) : uvec2(0u), sent);
             c = next;
         }
     }

@@ -33,13 +33,22 @@ Sectors all_open() {
     return s;
 }
 
+// The same sectors, counted from the other end of the slice.
+Sectors counted_from_the_other_end(Sectors s) {
+    s.blocked = bitfieldReverse(s.blocked.yx);
+#ifdef OUTSIDE
+    s.seen = bitfieldReverse(s.seen.yx);
+#endif
+    return s;
+}
+
 uvec2 sectors_below(int k) {
     uint low = k >= 32 ? ~0u : ~(~0u << uint(max(k, 0)));
     uint high = k >= 64 ? ~0u : k <= 32 ? 0u : ~(~0u << uint(k - 32));
     return uvec2(low, high);
 }
 // Sectors whose direction lies in [from, to).
-uvec2 sectors(float from, float to, float jitter) {
+uvec2 sectors_between(float from, float to, float jitter) {
     int a = int(ceil(place(from) - jitter)), b = int(ceil(place(to) - jitter));
     return sectors_below(b) & ~sectors_below(a);
 }

@@ -1,6 +1,6 @@
 // The march of the older methods, sample by sample: the horizon (all beyond the highest sample is blocked) and the bitmask (each
 // sample blocks from its front to `thickness` behind it on its view ray).
-void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
+void march(inout Sectors sectors, Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
     float limit = min(line.reach, line.border), last = last_step(line), lowest = 1.0;
     for (int i = 0; i < params.steps; i++) {
         float at = step_distance(i, step_jitter, limit);
@@ -14,10 +14,10 @@ void march(inout Sectors slots, Side s, Line line, vec3 P, vec3 N, float step_ji
 #ifdef HORIZON
         if (counts) lowest = min(lowest, front);
 #else
-        if (counts) slots.blocked |= sectors(front, share(s, w + params.thickness * away(s, w, 1.0 / length(w - s.eye))), jitter);
+        if (counts) sectors.blocked |= sectors_between(front, share(s, w + params.thickness * away(s, w, 1.0 / length(w - s.eye))), jitter);
 #endif
     }
 #ifdef HORIZON
-    slots.blocked |= sectors(lowest, 1.0, jitter);
+    sectors.blocked |= sectors_between(lowest, 1.0, jitter);
 #endif
 }

@@ -24,62 +24,99 @@ vec3 surround_eye(int view) {
     return vec3(FETCH(surround_image, ivec2(2 * view, row)).rg, FETCH(surround_image, ivec2(2 * view + 1, row)).r);
 }
 
-// Follows the ray from P in a direction through one map and returns how open it is, or -1 if that map does not tell.
-//
-// Seen from the eye the ray turns by the angle `whole` until infinity; at the angle a it is |P| sin(whole) / sin(whole - a) away (law of
-// sines), distances from the eye. Up to the angle `from` another pass has found what blocks it. Indoors it runs until it is beyond the
-// shell: past a surface it is blocked, unless it only passes behind the edge of one; past an opening it is outdoors. There what is seen
-// through the opening blocks it, and it is indoors again where it comes before a surface of the shell.
-float leaves_by_opening(int view, vec3 P, vec3 direction, float from) {
+// A ray from a point, as an eye sees it. It turns by the angle `whole` until infinity. At the angle a it is `rise` / sin(whole - a) away
+// from the eye (law of sines), and so are all distances here. It is indoors inside the shell, and outdoors once it has passed an opening.
+struct Ray {
+    vec3 towards, aside; // unit: where it starts, and across that to where it goes
+    float whole, rise;
+    float from;          // up to this angle another pass has found what blocks it
+    bool outdoors, left; // left: through an opening that it has met
+    bool before;         // at the last look it was nearer than what can block it
+    float angle, wall;   // of the last look; wall: how far what can block it was there
+};
+
+const float OPEN = 1.0, BLOCKED = 0.0, UNDECIDED = -1.0;
+
+vec3 heading(Ray r, float a) { return cos(a) * r.towards + sin(a) * r.aside; }
+bool is_beyond(Ray r, float a, float wall) { return r.rise > wall * (BEYOND * sin(r.whole - a)); }
+
+Ray ray_from(vec3 P, vec3 direction, float from) {
+    Ray r;
     float size = length(P), cosine = dot(P, direction) / size;
-    vec3 towards = P / size, aside = direction - cosine * towards;
-    float sine = length(aside), whole = fast_atan(sine, cosine), rise = size * sine, low = 0.0, low_wall = 0.0, result = -1.0;
-    aside /= max(sine, 1e-6);
-    vec2 start = shell_at(view, towards);
-    bool outdoors = start.x < 0.0 && size > -start.x, before = false, left = false; // before: nearer than what can block it
-    for (int i = 0; i <= SURROUND_STEPS && result < 0.0; i++) {
-        bool last = i == SURROUND_STEPS;
-        float a = last ? whole : whole * (float(i) + 0.5) / float(SURROUND_STEPS + 1), high = a, scale = sin(whole - a) * BEYOND;
-        vec2 shell = shell_at(view, cos(a) * towards + sin(a) * aside);
-        if (shell.x == 0.0) continue;
-        if (outdoors && shell.x > 0.0) {
-            before = !last && rise < shell.x * scale;
-            outdoors = !before;
-            left = left && outdoors;
-        } else if (outdoors) {
-            bool beyond = shell.y > 0.0 && (last || rise > shell.y * scale);
-            bool edge = abs(shell.y - low_wall) > SHELL_STEP * shell.y; // it passes behind the edge of what is seen there
-            if (last || (beyond && before && a > from && !edge)) result = beyond ? 0.0 : 1.0;
-            before = !beyond;
+    r.towards = P / size;
+    r.aside = direction - cosine * r.towards;
+    float sine = length(r.aside);
+    r.aside /= max(sine, 1e-6);
+    r.whole = fast_atan(sine, cosine);
+    r.rise = size * sine;
+    r.from = from;
+    r.before = r.left = r.outdoors = false;
+    r.angle = r.wall = 0.0;
+    return r;
+}
+
+// Between the last look and the one at angle a the ray has passed the shell. Finds where; `shell` becomes what is there. True if it has
+// only passed behind the edge of something: then the shell is not connected there, and the ray may be free.
+bool passes_an_edge(Ray r, int view, float a, inout vec2 shell) {
+    float low = r.angle, high = a, low_wall = r.wall, high_wall = abs(shell.x);
+    for (int k = 0; k < SURROUND_HALVINGS; k++) {
+        float middle = 0.5 * (low + high);
+        vec2 s = shell_at(view, heading(r, middle));
+        if (s.x != 0.0 && is_beyond(r, middle, abs(s.x))) {
+            high = middle;
+            shell = s;
+            high_wall = abs(s.x);
         } else {
-            bool beyond = last || rise > abs(shell.x) * scale, edge = false;
-            if (beyond && before) {
-                float high_wall = abs(shell.x);
-                for (int k = 0; k < SURROUND_HALVINGS; k++) {
-                    float middle = 0.5 * (low + high);
-                    vec2 s = shell_at(view, cos(middle) * towards + sin(middle) * aside);
-                    if (s.x != 0.0 && rise > abs(s.x) * BEYOND * sin(whole - middle)) {
-                        high = middle;
-                        shell = s;
-                        high_wall = abs(s.x);
-                    } else {
-                        low = middle;
-                        low_wall = s.x != 0.0 ? abs(s.x) : low_wall;
-                    }
-                }
-                edge = abs(high_wall - low_wall) > SHELL_STEP * low_wall;
-            }
-            if ((beyond && before && !edge) || (last && shell.x < 0.0)) {
-                left = outdoors = shell.x < 0.0;
-                if (!outdoors && a > from) result = 0.0;
-                else if (outdoors && last) result = shell.y > 0.0 ? 0.0 : 1.0;
-            }
-            before = !beyond;
+            low = middle;
+            low_wall = s.x != 0.0 ? abs(s.x) : low_wall;
         }
-        low = a;
-        low_wall = outdoors ? shell.y : abs(shell.x);
     }
-    return result >= 0.0 ? result : left ? 1.0 : outdoors ? OUT_OF_SIGHT : -1.0;
+    return abs(high_wall - low_wall) > SHELL_STEP * low_wall;
+}
+
+// A look at angle a, indoors: past a surface the ray is blocked, past an opening it is outdoors.
+float look_indoors(inout Ray r, int view, float a, bool last, inout vec2 shell) {
+    bool beyond = last || is_beyond(r, a, abs(shell.x));
+    bool passes = beyond && r.before && !passes_an_edge(r, view, a, shell);
+    bool leaves = shell.x < 0.0 && (passes || last);
+    if (leaves) r.left = r.outdoors = true;
+    r.before = !beyond;
+    if (leaves) return !last ? UNDECIDED : shell.y > 0.0 ? BLOCKED : OPEN;
+    return passes && a > r.from ? BLOCKED : UNDECIDED;
+}
+
+// A look at angle a, outdoors: what is seen through the opening blocks the ray. It is indoors again where it comes before a surface of
+// the shell.
+float look_outdoors(inout Ray r, float a, bool last, vec2 shell) {
+    if (shell.x > 0.0) {
+        r.before = !last && !is_beyond(r, a, shell.x);
+        r.outdoors = !r.before;
+        r.left = r.left && r.outdoors;
+        return UNDECIDED;
+    }
+    bool beyond = shell.y > 0.0 && (last || is_beyond(r, a, shell.y));
+    bool behind_an_edge = abs(shell.y - r.wall) > SHELL_STEP * shell.y; // of what is seen there
+    bool blocked = beyond && r.before && a > r.from && !behind_an_edge;
+    r.before = !beyond;
+    return last || blocked ? (beyond ? BLOCKED : OPEN) : UNDECIDED;
+}
+
+// Follows the ray from P in a direction through one map: how open it is, or UNDECIDED if that map does not tell.
+float leaves_by_opening(int view, vec3 P, vec3 direction, float from) {
+    Ray r = ray_from(P, direction, from);
+    vec2 start = shell_at(view, r.towards);
+    r.outdoors = start.x < 0.0 && length(P) > -start.x;
+    for (int i = 0; i <= SURROUND_STEPS; i++) {
+        bool last = i == SURROUND_STEPS; // at infinity
+        float a = last ? r.whole : r.whole * (float(i) + 0.5) / float(SURROUND_STEPS + 1);
+        vec2 shell = shell_at(view, heading(r, a));
+        if (shell.x == 0.0) continue;
+        float open = r.outdoors ? look_outdoors(r, a, last, shell) : look_indoors(r, view, a, last, shell);
+        if (open != UNDECIDED) return open;
+        r.angle = a;
+        r.wall = r.outdoors ? shell.y : abs(shell.x);
+    }
+    return r.left ? OPEN : r.outdoors ? OUT_OF_SIGHT : UNDECIDED;
 }
 #endif
 
@@ -137,22 +174,3 @@ float openness(vec3 V, vec3 across, vec2 at, Exits x) {
 #endif
     return open >= 0.0 ? open : params.openness;
 }
-
-#if defined(BOUNCE) && defined(OUTSIDE)
-// The share of the sectors that meet a surface outside the frame.
-float closed_share(Side s, vec3 V, vec3 across, float n, Sectors slots, float jitter, Exits x) {
-#ifdef SURROUND
-    const float width = PI / float(CELLS);
-    float from = n - 0.5 * PI, c = 0.0, closed = 0.0;
-    for (int i = 0; i < CELLS; i++) {
-        float next = i + 1 == CELLS ? 1.0 : share_at(s, from + float(i + 1) * width);
-        uvec2 open = sectors(c, next, jitter) & ~slots.blocked;
-        closed += sector_share(open) - open_share(open, slots.seen, openness(V, across, look_in(s, from + float(i) * width, width, i, jitter), x));
-        c = next;
-    }
-    return closed;
-#else
-    return sector_share(~slots.blocked) - open_share(~slots.blocked, slots.seen, params.openness);
-#endif
-}
-#endif

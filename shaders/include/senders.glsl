@@ -1,5 +1,5 @@
 // The light that a surface sends and its albedo in 64 bits: three numbers of 16 bits (7 of exponent, 9 of fraction, no sign), from 2^-62
-// to 2^64, and 5 bits for each colour of the albedo, which only a guess is multiplied by (sent_by in arc.comp).
+// to 2^64, and 5 bits for each colour of the albedo, which only a guess is multiplied by (sent_by in include/arc_march.glsl).
 
 const float SENT_SCALE = 18446744073709551616.0; // 2^64: the exponents kept are those of a number this many times smaller
 

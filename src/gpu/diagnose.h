@@ -23,8 +23,8 @@ bool diagnose_line(const char *line, diagnose_place *place);
 // The first error of a log that has a place. False if there is none.
 bool diagnose_first(const char *log, diagnose_place *place);
 
-// The log with "arc.comp:144: " for each place whose file is one of the `count` files; the rest as it was. To be freed; NULL on
-// failure.
+// The log with "arc_light.comp:144: " for each place whose file is one of the `count` files; the rest as it was. To be freed;
+// NULL on failure.
 char *diagnose_translate(const char *log, const char *const files[], int count, error *e);
 
 #endif

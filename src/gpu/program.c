@@ -168,7 +168,7 @@ static bool link_program(GLuint program, char **log, error *e)
     return ok;
 }
 
-// The first error as "arc.comp:144: the driver refuses ...", the whole log to -v.
+// The first error as "arc_light.comp:144: the driver refuses ...", the whole log to -v.
 static void refuse(const gpu *g, const splice *s, const char *name, const char *log, error *e)
 {
     enum { SHOWN = 400 };

@@ -51,13 +51,13 @@ static bool march(work *w, const char *what, int round, error *e)
     variant_add(&v, true, "HALF_DIFFERENCE");
     variant_add(&v, true, "ROUND");
     const pass_call call = {
-        .program = "arc",
+        .program = "arc_occlusion",
         .variant = v.words,
         .untimed = true,
         .tiles = go_to(w, w->active),
         PASS_PARAMS(params),
         .reads = {{"surface_image", &c->image[IMAGE_SURFACE]}, {"planes_image", &c->image[IMAGE_PLANES]}},
-        .writes = {{"scalar_image", &c->image[IMAGE_OCCLUSION]},
+        .writes = {{"occlusion_image", &c->image[IMAGE_OCCLUSION]},
                    {"half_difference_image", &c->image[IMAGE_HALF_DIFFERENCE]},
                    {"sums_image", &w->sums}},
     };

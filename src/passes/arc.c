@@ -180,11 +180,11 @@ static bool run_bent(pass_context *c, const char *what, error *e)
     gpu_image unused = {0};
     variant_add(&v, true, "BENT");
     const pass_call call = {
-        .program = "arc",
+        .program = "arc_occlusion",
         .label = "arc bent",
         .variant = v.words,
         .reads = {{"surface_image", &c->image[IMAGE_SURFACE]}, {"planes_image", &c->image[IMAGE_PLANES]}},
-        .writes = {{"scalar_image", &unused}, {"light_image", &c->image[IMAGE_BENT]}},
+        .writes = {{"occlusion_image", &unused}, {"bent_image", &c->image[IMAGE_BENT]}},
     };
     bool ok =
         pass_make(c, &unused, GL_R32F, 1.0f, e) && pass_make_image(c, IMAGE_BENT, e) && arc_run_as_adaptive(c, &call, &params, e);
@@ -204,12 +204,13 @@ bool arc_run_occlusion(pass_context *c, const char *what, error *e)
     if (c->want_bent && !pass_make_image(c, IMAGE_BENT, e)) return false;
     if (half_difference && !pass_make_image(c, IMAGE_HALF_DIFFERENCE, e)) return false;
     const pass_call call = {
-        .program = "arc",
+        .program = "arc_occlusion",
+        .label = "arc",
         .variant = v.words,
         PASS_PARAMS(params),
         .reads = {{"surface_image", &c->image[IMAGE_SURFACE]}, {"planes_image", &c->image[IMAGE_PLANES]}},
-        .writes = {{"scalar_image", &c->image[IMAGE_OCCLUSION]},
-                   {"light_image", &c->image[IMAGE_BENT]},
+        .writes = {{"occlusion_image", &c->image[IMAGE_OCCLUSION]},
+                   {"bent_image", &c->image[IMAGE_BENT]},
                    {"half_difference_image", &c->image[IMAGE_HALF_DIFFERENCE]}},
     };
     return pass_run(c, &call, e);
@@ -278,17 +279,16 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
                    !make_senders(seen, sender, albedo, e) || !pass_make_image(c, IMAGE_INDIRECT, e)))
         return false;
     if (sky) c->suns_apart = c->sunless->map.id != 0;
-    variant v = arc_variant(seen, "RUNS");
-    variant_add(&v, sky, "LIGHT");
+    variant v = arc_variant(seen, "");
     variant_add(&v, visibility, "VISIBILITY");
-    variant_add(&v, bounce, "BOUNCE");
+    variant_add(&v, sky && bounce, "BOUNCE");
     variant_add(&v, bounce && exitant, "EXITANT");
     variant_add(&v, arc_closes_outside(c), "OUTSIDE");
     variant_add(&v, arc_has_surround(c), "SURROUND");
     variant_add(&v, c->whole != NULL, "RECEIVERS");
     variant_add(&v, c->at_lone, "LONE");
     pass_call call = {
-        .program = "arc",
+        .program = sky ? "arc_light" : "arc_bounce",
         .label = sky && bounce ? "arc light+bounce"
                  : sky         ? "arc light"
                                : "arc bounce",
@@ -303,8 +303,8 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
                   {"surround_image", &seen->image[IMAGE_SURROUND]},
                   {"receiver_depth", &c->image[IMAGE_DEPTH]},
                   {"receiver_normal", &c->image[IMAGE_NORMAL]}},
-        .writes = {{"scalar_image", &c->image[IMAGE_VISIBILITY]},
-                   {"light_image", &c->image[IMAGE_RADIANCE]},
+        .writes = {{"visibility_image", &c->image[IMAGE_VISIBILITY]},
+                   {"radiance_image", &c->image[IMAGE_RADIANCE]},
                    {"indirect_image", &c->image[IMAGE_INDIRECT]}},
     };
     if (!c->at_lone) return arc_run_as_adaptive(c, &call, &params, e);
@@ -328,12 +328,13 @@ static bool run_bounce(pass_context *c, error *e)
     return (c->image[IMAGE_INDIRECT].id && !c->at_lone) || run_light(c, false, true, e);
 }
 
+// Of marches for light: what they know beyond the frame, and of which pixels.
+#define ARC_FRAME "[OUTSIDE] [SURROUND] [RECEIVERS] [LONE]"
+
 static const variant_row variants[] = {
-    {.program = "arc",
-     .pattern = ARC_OCCLUSION(
-         "RUNS [PLANES]") " | RUNS [PLANES] LIGHT [VISIBILITY] [OUTSIDE] [SURROUND] [RECEIVERS] [LONE] | "
-                          "RUNS [PLANES] LIGHT [VISIBILITY] BOUNCE EXITANT [OUTSIDE] [SURROUND] [RECEIVERS] [LONE] | "
-                          "RUNS [PLANES] BOUNCE [EXITANT] [OUTSIDE] [SURROUND] [RECEIVERS] [LONE]"},
+    {.program = "arc_bounce", .pattern = "[PLANES] [EXITANT] " ARC_FRAME},
+    {.program = "arc_light", .pattern = "[PLANES] [VISIBILITY] " ARC_FRAME " | [PLANES] [VISIBILITY] BOUNCE EXITANT " ARC_FRAME},
+    {.program = "arc_occlusion", .pattern = ARC_OCCLUSION("RUNS [PLANES]")},
     {.program = "outside_light", .pattern = ""},
     {.program = "plane_light", .pattern = ""},
     {.program = "senders", .pattern = "[ALBEDO]"},

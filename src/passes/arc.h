@@ -40,8 +40,8 @@ int arc_round_steps(int round);  // a side, of what it adds
 // the tile's surfaces) is below c->set.error or a further round would take more than c->set.most_samples. `what` names what
 // blocks. Fills the occlusion, denoised, c->adaptive and, if wanted, the error.
 bool arc_run_adaptive(pass_context *c, const char *what, error *e);
-// pass_run of a call of "arc" with these parameters (the call's own are ignored), after rounds with as many slices as each tile
-// came to.
+// pass_run of a call of an arc shader with these parameters (the call's own are ignored), after rounds with as many slices as
+// each tile came to.
 bool arc_run_as_adaptive(pass_context *c, const pass_call *call, const arc_params *params, error *e);
 
 // Whether directions that leave the frame may be closed (shaders/include/outside.glsl).

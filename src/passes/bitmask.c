@@ -3,7 +3,7 @@
 
 static bool run(pass_context *c, error *e) { return arc_run_occlusion(c, "BITMASK", e); }
 
-static const variant_row variants[] = {{.program = "arc", .pattern = ARC_OCCLUSION("BITMASK")}, {0}};
+static const variant_row variants[] = {{.program = "arc_occlusion", .pattern = ARC_OCCLUSION("BITMASK")}, {0}};
 
 const method method_bitmask = {
     .name = "bitmask",

@@ -29,13 +29,13 @@ what() {
 }
 changes=0
 what same README.md '1s/$/ changed/'
-what same shaders/arc.comp '1i// another comment'
-what same shaders/arc.comp 's/^    /        /'
+what same shaders/arc_light.comp '1i// another comment'
+what same shaders/arc_light.comp 's/^    /        /'
 what same src/passes/arc.c '1i/* another comment, on\n two lines */'
 what same src/cli/progress.c '$aint not_of_pixels;'
 what same src/pipeline/report.c '$aint not_of_pixels;'
 what same src/main.c '$aint not_of_pixels;'
-what other shaders/arc.comp '$aconst float added = 1.0;'
+what other shaders/arc_light.comp '$aconst float added = 1.0;'
 what other shaders/include/params.glsl '$aconst float added = 1.0;'
 what other src/passes/arc.c '$aint added;'
 what other src/gbuffer/radius.c '$aint added;'

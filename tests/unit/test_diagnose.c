@@ -73,14 +73,15 @@ static void the_first_error_is_found_behind_warnings(void **state)
 
 static void numbers_of_files_become_names(void **state)
 {
-    static const char *const files[] = {"arc.comp", "include/frame.glsl"};
+    static const char *const files[] = {"arc_light.comp", "include/frame.glsl"};
     error e = {0};
     (void)state;
     char *text = diagnose_translate("0:144(5): error: a\n1(20) : error C0000: b\n2:1(1): error: no such file\nlinked with error",
                                     files, 2, &e);
     must(text != NULL, &e);
     assert_string_equal(
-        text, "arc.comp:144: error: a\ninclude/frame.glsl:20: error C0000: b\n2:1(1): error: no such file\nlinked with error");
+        text,
+        "arc_light.comp:144: error: a\ninclude/frame.glsl:20: error C0000: b\n2:1(1): error: no such file\nlinked with error");
     free(text);
 }
 
