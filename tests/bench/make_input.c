@@ -1,5 +1,6 @@
-// make_input WIDTH HEIGHT FILE.exr: a G-buffer of any size for `make bench-frame`: the test still life with noise in albedo and
-// beauty, 13 channels as renderers write them (half R G B, albedo, N; float P, Z), ZIP.
+// make_input WIDTH HEIGHT FILE.exr [clean]: a G-buffer of any size for `make bench-frame`: the test still life, 13 channels as
+// renderers write them (half R G B, albedo, N; float P, Z), ZIP. Albedo and beauty hold noise, which costs a copy most of its
+// time, or with `clean` none: flat albedo, and a beauty shaded by one light.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,11 +35,21 @@ static void float_plane(const float *from, int k, size_t n, float *to)
     for (size_t i = 0; i < n; i++) to[i] = from[3 * i + (size_t)k];
 }
 
+// Of a far light above the camera.
+static void shade_plane(const picture *p, int k, size_t n, uint16_t *to)
+{
+    for (size_t i = 0; i < n; i++) {
+        float cosine = 0.6f * p->normal[3 * i + 1] + 0.8f * p->normal[3 * i + 2];
+        to[i] = float_to_half(p->albedo[3 * i + (size_t)k] * (0.2f + 0.8f * (cosine > 0.0f ? cosine : 0.0f)));
+    }
+}
+
 int main(int argc, char **argv)
 {
     static const char *names[CHANNELS] = {"R",   "G",   "B",   "albedo.R", "albedo.G", "albedo.B", "N.X",
                                           "N.Y", "N.Z", "P.X", "P.Y",      "P.Z",      "Z"};
-    if (argc != 4) return 2;
+    bool clean = argc == 5 && strcmp(argv[4], "clean") == 0;
+    if (argc != 4 && !clean) return 2;
     scene s = {0};
     picture p;
     error e = {0};
@@ -53,10 +64,12 @@ int main(int argc, char **argv)
         bool half = c < 9;
         void *data = malloc(n * (half ? 2 : 4));
         if (!data) return 1;
-        if (c < 3)
+        if (c < 3 && clean)
+            shade_plane(&p, c, n, data);
+        else if (c < 3)
             half_plane(p.albedo, c, n, 0.3f, 77u, data);
         else if (half)
-            half_plane(c < 6 ? p.albedo : p.normal, c % 3, n, c < 6 ? 0.05f : 0.0f, 5u, data);
+            half_plane(c < 6 ? p.albedo : p.normal, c % 3, n, c < 6 && !clean ? 0.05f : 0.0f, 5u, data);
         else if (c < 12)
             float_plane(p.position, c - 9, n, data);
         else
