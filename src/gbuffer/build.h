@@ -35,10 +35,17 @@ static inline double plane_get(const plane *p, int x, int y)
     return (double)((const uint32_t *)p->data)[i];
 }
 
+enum { PLANE_BLOCK = 256 }; // pixels fetched at a time, in the nearest cache
+
+// n samples of a row from pixel x on as floats, NaN outside the part's window; p->data is there. Returns how many of those inside
+// are NaN or infinite. Faster than plane_get.
+size_t plane_fetch(const plane *p, int x, int y, int n, float *to);
+
 typedef enum surface {
     SURFACE_NONE,
     SURFACE_YES,
-    SURFACE_ORIGIN, // P is exactly (0, 0, 0) with a valid depth: decided when the camera is known
+    SURFACE_ORIGIN,  // P is exactly (0, 0, 0) with a valid depth: decided when the camera is known
+    SURFACE_SETTLED, // from positions_raw on: a surface whose raw depth is the one at its pixel's centre
 } surface;
 
 // P and Z: what the file has of them, and how they are read. A `raw` depth is what P (or Z) says before it is moved onto the

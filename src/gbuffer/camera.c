@@ -8,27 +8,6 @@
 
 static const double pi = 3.14159265358979323846;
 
-// The transpose's product written out: this runs for every pixel of a frame.
-vec3 camera_from_world(const camera *c, vec3 world)
-{
-    const double(*m)[3] = c->world_from_camera.m;
-    vec3 d = v3_sub(world, c->origin);
-    return v3(m[0][0] * d.x + m[1][0] * d.y + m[2][0] * d.z, m[0][1] * d.x + m[1][1] * d.y + m[2][1] * d.z,
-              m[0][2] * d.x + m[1][2] * d.y + m[2][2] * d.z);
-}
-
-bool camera_project(const camera *c, vec3 p, double *x, double *y)
-{
-    double scale = 1.0;
-    if (c->kind == CAMERA_PERSPECTIVE) {
-        if (!(p.z > 0.0)) return false;
-        scale = 1.0 / p.z;
-    }
-    *x = c->cx + c->fx * p.x * scale;
-    *y = c->cy + c->fy * p.y * scale;
-    return true;
-}
-
 double camera_point_error(const camera *c, const camera_point *point)
 {
     double x, y;

@@ -62,9 +62,28 @@ void camera_from_ortho(double width, box2 data, box2 display, double pixel_aspec
 // OpenGL), optional}.
 bool camera_from_json(const char *path, box2 data, box2 display, double pixel_aspect, camera *out, error *e);
 
-// World position to data-window pixel and camera-space position.
-vec3 camera_from_world(const camera *c, vec3 world);
-bool camera_project(const camera *c, vec3 camera_space, double *x, double *y); // false behind the eye
+// World position to camera space. Here, and the transpose's product written out: this runs for every pixel of a frame.
+static inline vec3 camera_from_world(const camera *c, vec3 world)
+{
+    const double(*m)[3] = c->world_from_camera.m;
+    vec3 d = v3_sub(world, c->origin);
+    return v3(m[0][0] * d.x + m[1][0] * d.y + m[2][0] * d.z, m[0][1] * d.x + m[1][1] * d.y + m[2][1] * d.z,
+              m[0][2] * d.x + m[1][2] * d.y + m[2][2] * d.z);
+}
+
+// Camera-space position to data-window pixel; behind the eye false, and NaN.
+static inline bool camera_project(const camera *c, vec3 p, double *x, double *y)
+{
+    double scale = 1.0;
+    *x = *y = (double)NAN;
+    if (c->kind == CAMERA_PERSPECTIVE) {
+        if (!(p.z > 0.0)) return false;
+        scale = 1.0 / p.z;
+    }
+    *x = c->cx + c->fx * p.x * scale;
+    *y = c->cy + c->fy * p.y * scale;
+    return true;
+}
 
 // Median of the reprojection errors in pixels, and the share below half a pixel.
 void camera_residual(const camera *c, const camera_point *points, size_t count, double *median, double *share);

@@ -19,34 +19,12 @@ typedef struct job {
     atomic_size_t *negative; // and those below 0, where that has no meaning; NULL: it has
 } job;
 
-enum { BLOCK = 256 }; // pixels converted at a time, in the nearest cache
-
 // NaN and -infinity are 0.
 static float tamed(float v, float low, float high)
 {
     if (v >= low && v <= high) return v;
     if (v > high) return high;
     return v >= -FLT_MAX ? low : 0.0f;
-}
-
-// n samples of a row from pixel x on as floats, NaN outside the part's window. Adds those that are stored as NaN or infinity to
-// *bad.
-static void fetch(const plane *p, int x, int y, int n, float *to, size_t *bad)
-{
-    int from = x + p->dx, row = y + p->dy, first = from < 0 ? -from : 0, last = from + n > p->width ? p->width - from : n;
-    if (row < 0 || row >= p->height || first > n) first = last = n;
-    if (last < first) last = first;
-    for (int i = 0; i < first; i++) to[i] = NAN;
-    for (int i = last; i < n; i++) to[i] = NAN;
-    if (first == last) return;
-    size_t at = (size_t)row * (size_t)p->width + (size_t)(from + first), count = (size_t)(last - first);
-    if (p->type == SAMPLE_HALF)
-        half_to_floats((const uint16_t *)p->data + at, count, to + first);
-    else if (p->type == SAMPLE_FLOAT)
-        memcpy(to + first, (const float *)p->data + at, count * sizeof *to);
-    else
-        for (size_t i = 0; i < count; i++) to[(size_t)first + i] = (float)((const uint32_t *)p->data)[at + i];
-    for (int i = first; i < last; i++) *bad += isfinite(to[i]) ? 0 : 1;
 }
 
 static void count_negative(const job *j, const float *values, int n)
@@ -59,10 +37,10 @@ static void count_negative(const job *j, const float *values, int n)
 static void convert_block(const job *j, int x, int y, int n, size_t *bad)
 {
     const size_t step = (size_t)j->components;
-    float values[BLOCK];
+    float values[PLANE_BLOCK];
     for (int c = 0; c < j->components; c++) {
         float *to = j->to + ((size_t)y * (size_t)j->width + (size_t)x) * step + (size_t)c;
-        if (j->from[c].data) fetch(&j->from[c], x, y, n, values, bad);
+        if (j->from[c].data) *bad += plane_fetch(&j->from[c], x, y, n, values);
         if (j->negative && j->from[c].data) count_negative(j, values, n);
         for (int i = 0; i < n; i++, to += step) *to = j->from[c].data ? tamed(values[i], j->low, j->high) : j->fill[c];
     }
@@ -73,7 +51,8 @@ static bool convert_row(void *context, size_t row, int worker)
     (void)worker;
     const job *j = context;
     size_t bad = 0;
-    for (int x = 0; x < j->width; x += BLOCK) convert_block(j, x, (int)row, j->width - x < BLOCK ? j->width - x : BLOCK, &bad);
+    for (int x = 0; x < j->width; x += PLANE_BLOCK)
+        convert_block(j, x, (int)row, j->width - x < PLANE_BLOCK ? j->width - x : PLANE_BLOCK, &bad);
     if (bad) atomic_fetch_add(j->bad, bad);
     return true;
 }

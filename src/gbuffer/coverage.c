@@ -54,14 +54,29 @@ static double coverage_of_albedo(const build *b, int x, int y)
     return k;
 }
 
+// near_background of a row's n pixels from x on. Not pixel by pixel: of most frames every pixel is asked about.
+static void near_background_row(const build *b, int x, int y, int n, bool *near)
+{
+    bool empty[PLANE_BLOCK + 2] = {false}; // of the columns from x - 1 to x + n
+    int first = x > 0 ? 0 : 1, last = x + n < b->g->width ? n + 2 : n + 1;
+    for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < b->g->height; v++) {
+        const float *depth = b->g->depth + (size_t)v * (size_t)b->g->width;
+        for (int k = first; k < last; k++) empty[k] |= !(depth[x - 1 + k] > 0.0f);
+    }
+    for (int k = 0; k < n; k++) near[k] = empty[k] | empty[k + 1] | empty[k + 2];
+}
+
 // Away from the background neither is coverage: alpha there is the material's (glass), and a bump map changes |N|.
 static void coverage_row(build *b, int y)
 {
+    bool near[PLANE_BLOCK];
     for (int x = 0; x < b->g->width; x++) {
         size_t i = build_index(b, x, y);
+        if (x % PLANE_BLOCK == 0)
+            near_background_row(b, x, y, b->g->width - x < PLANE_BLOCK ? b->g->width - x : PLANE_BLOCK, near);
         bool solid = b->g->depth[i] > 0.0f;
         double k = solid ? 1.0 : 0.0;
-        if (near_background(b, x, y)) {
+        if (near[x % PLANE_BLOCK]) {
             double stored = k;
             if (b->alpha.data)
                 stored = plane_get(&b->alpha, x, y);

@@ -29,15 +29,15 @@ vec3 normals_decode(const build *b, vec3 code)
     return b->normal.there ? m3_apply(b->normal.to_camera, encoding_decode(b->normal.encoding, code)) : v3(0, 0, 0);
 }
 
-bool normals_read(const build *b, int x, int y, vec3 *n)
+static bool read_stored(const build *b, vec3 v, vec3 *n)
 {
-    if (!b->normal.there) return false;
-    vec3 v = stored(b, x, y);
     if (v3_length(v) > b->normal.longest) return false;
     v = encoding_decode(b->normal.encoding, v);
     *n = v3_normalize(m3_apply(b->normal.to_camera, v));
     return v3_dot(*n, *n) > 0.5;
 }
+
+bool normals_read(const build *b, int x, int y, vec3 *n) { return b->normal.there && read_stored(b, stored(b, x, y), n); }
 
 // On a plane 1/z is linear across a perspective picture, z across an orthographic one.
 static double linear(const camera *c, double z) { return c->kind == CAMERA_PERSPECTIVE ? 1.0 / z : z; }
@@ -84,28 +84,40 @@ vec3 normals_from_depth(const build *b, const float *depth, int x, int y)
     return v3_dot(n, ray) > 0.0 ? v3_scale(n, -1.0) : n;
 }
 
-static vec3 normal_of(build *b, int x, int y)
+// v: as stored.
+static vec3 normal_of(build *b, int x, int y, vec3 v)
 {
     vec3 n;
-    if (!normals_read(b, x, y, &n)) {
+    if (!b->normal.there || !read_stored(b, v, &n)) {
         if (b->normal.there) atomic_fetch_add(&b->defects.normals, 1);
         return normals_from_depth(b, b->g->depth, x, y);
     }
-    vec3 ray = v3_normalize(build_ray(&b->g->camera, x, y));
+    vec3 ray = build_ray(&b->g->camera, x, y);
+    if (v3_dot(n, ray) < -1e-9 * (fabs(ray.x) + fabs(ray.y) + 1.0)) return n; // whatever rounding does
+    ray = v3_normalize(ray);
     double away = v3_dot(n, ray);
     if (away <= 0.0) return n;
     double agrees = v3_dot(n, normals_from_depth(b, b->g->depth, x, y));
     return agrees < (away <= facing_away ? opposite : 0.0) ? v3_scale(n, -1.0) : n;
 }
 
-static void make_row(build *b, int y)
+static void make_block(build *b, int x, int y, int count)
 {
-    for (int x = 0; x < b->g->width; x++) {
-        size_t i = build_index(b, x, y);
-        vec3 n = b->g->depth[i] > 0.0f ? normal_of(b, x, y) : v3(0, 0, 0);
+    float v[3][PLANE_BLOCK] = {{0}};
+    for (int c = 0; c < 3 && b->normal.there; c++) plane_fetch(&b->normal.n[c], x, y, count, v[c]);
+    for (int k = 0; k < count; k++) {
+        size_t i = build_index(b, x + k, y);
+        vec3 n = v3(0, 0, 0), code = v3((double)v[0][k], (double)v[1][k], (double)v[2][k]);
+        if (b->g->depth[i] > 0.0f) n = normal_of(b, x + k, y, code);
         float *out = b->g->normal + 4 * i;
         out[0] = (float)n.x, out[1] = (float)n.y, out[2] = (float)n.z, out[3] = 0.0f;
     }
+}
+
+static void make_row(build *b, int y)
+{
+    const int width = b->g->width;
+    for (int x = 0; x < width; x += PLANE_BLOCK) make_block(b, x, y, width - x < PLANE_BLOCK ? width - x : PLANE_BLOCK);
 }
 
 void normals_make(build *b)

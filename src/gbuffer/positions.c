@@ -47,21 +47,27 @@ static bool origin_is_surface(const build *b, int x, int y)
     return fabs(depth_from_channel(b, x, y) - p.z) < same_depth * p.z && pixels_off(b, p, x, y) < 2.0;
 }
 
+// Whether depth comes from where P was sampled, which need not be its pixel's centre.
+static bool depth_is_of_p(const build *b) { return b->position.has_p && (!b->position.z_wins || b->position.lateral); }
+
 static void raw_row(build *b, int y)
 {
+    const bool from_p = depth_is_of_p(b);
     for (int x = 0; x < b->g->width; x++) {
         size_t i = build_index(b, x, y);
         b->position.raw[i] = 0.0f;
         if (b->surface[i] == SURFACE_ORIGIN) b->surface[i] = origin_is_surface(b, x, y) ? SURFACE_YES : SURFACE_NONE;
         if (b->surface[i] != SURFACE_YES) continue;
-        double z = b->position.has_p ? sampled(b, x, y).z : depth_from_channel(b, x, y);
-        if (b->position.has_p && b->position.z_wins && !b->position.lateral) z = depth_from_channel(b, x, y);
+        vec3 p = from_p ? sampled(b, x, y) : v3(0, 0, 0);
+        double z = from_p ? p.z : depth_from_channel(b, x, y);
         if (!(z > 0.0) && b->position.z_measured) z = depth_from_channel(b, x, y); // a bad P behind the eye
         float as_float = (float)z;
-        if (as_float > 0.0f && isfinite(as_float))
-            b->position.raw[i] = as_float;
-        else
+        if (!(as_float > 0.0f && isfinite(as_float))) {
             b->surface[i] = SURFACE_NONE;
+            continue;
+        }
+        b->position.raw[i] = as_float;
+        if (!from_p || pixels_off(b, p, x, y) <= on_ray) b->surface[i] = SURFACE_SETTLED;
     }
 }
 
@@ -130,10 +136,9 @@ static double final_depth(build *b, int x, int y, bool *moved)
 {
     double z = (double)b->position.raw[build_index(b, x, y)];
     *moved = false;
-    if (!b->position.has_p || !(z > 0.0) || (b->position.z_wins && !b->position.lateral)) return z;
+    if (!(z > 0.0) || b->surface[build_index(b, x, y)] == SURFACE_SETTLED) return z;
     vec3 p = sampled(b, x, y);
     double off = pixels_off(b, p, x, y);
-    if (off <= on_ray) return z;
     if (!(off <= b->position.far_pixels)) return depth_of_stray(b, x, y);
     vec3 n, d = build_ray(&b->g->camera, x, y);
     if (!normals_read(b, x, y, &n)) n = normals_from_depth(b, b->position.raw, x, y);
