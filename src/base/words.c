@@ -3,8 +3,9 @@
 #include <stddef.h>
 
 const option_word depth_kind_words[] = {
-    {"planar", DEPTH_PLANAR},     {"radial", DEPTH_RADIAL},   {"inverse", DEPTH_INVERSE},   {"linear", DEPTH_LINEAR},
-    {"inverted", DEPTH_INVERTED}, {"zbuffer", DEPTH_ZBUFFER}, {"reversed", DEPTH_REVERSED}, {NULL, 0},
+    {"planar", DEPTH_PLANAR},     {"radial", DEPTH_RADIAL},     {"inverse", DEPTH_INVERSE},
+    {"linear", DEPTH_LINEAR},     {"inverted", DEPTH_INVERTED}, {"zbuffer", DEPTH_ZBUFFER},
+    {"reversed", DEPTH_REVERSED}, {"ndc", DEPTH_NDC},           {NULL, 0},
 };
 
 const option_word albedo_kind_words[] = {{"base", ALBEDO_BASE}, {"diffuse", ALBEDO_DIFFUSE}, {NULL, 0}};

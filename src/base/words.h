@@ -9,7 +9,7 @@ typedef struct option_word {
 } option_word;
 
 // Distance from the camera's plane or from the eye; or, for planar z: 1 / z with 0 behind everything; between near and far 0..1
-// or 1..0; the hyperbolic 0..1 of a z-buffer, or that reversed (1 at near).
+// or 1..0; the hyperbolic 0..1 of a z-buffer, or that reversed (1 at near), or that as -1..1.
 typedef enum depth_kind {
     DEPTH_AUTO,
     DEPTH_PLANAR,
@@ -19,6 +19,7 @@ typedef enum depth_kind {
     DEPTH_INVERTED,
     DEPTH_ZBUFFER,
     DEPTH_REVERSED,
+    DEPTH_NDC,
     DEPTH_KINDS
 } depth_kind;
 

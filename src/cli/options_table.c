@@ -173,7 +173,7 @@ const option_row option_rows[] = {
     {.group = GROUP_CHANNELS, .name = "depth-kind", .kind = OPT_ENUM, .offset = FIELD(depth_kind),
      .words = depth_kind_words,
      .pixels = true, .fallback = "measured, or by renderer",
-     .help = "What depth is: the distance along the camera's axis or along the ray of the pixel; 1 / z with 0 behind everything; 0..1 from near to far, or from far to near; the hyperbolic 0..1 of a z-buffer, or of a reversed one. The last four need --depth-range."},
+     .help = "What depth is: the distance along the camera's axis or along the ray of the pixel; 1 / z with 0 behind everything; 0..1 from near to far, or from far to near; the hyperbolic 0..1 of a z-buffer, or of a reversed one, or -1..1 (OpenGL's). The last five need --depth-range."},
     {.group = GROUP_CHANNELS, .name = "depth-range", .argument = "NEAR FAR", .kind = OPT_RANGE, .offset = FIELD(depth_range),
      .pixels = true, .fallback = "the header's",
      .help = "Distances in scene units that a depth of 0..1 runs between; also as NEAR,FAR."},

@@ -1,11 +1,14 @@
 // Finds the kind of a depth where the file has no positions. Two kinds of evidence decide; neither needs the scale:
 // - the file's normals: they fit the surfaces only if the depth is read as the right kind;
 // - planes: 1 / z is linear across a perspective picture of a plane (z across an orthographic one), again only for the right
-// kind. If neither decides, the renderer's usual kind is taken, unless all values lie within 0..1 and so can hardly be distances.
+// kind. 1 / z and a z-buffer's values differ by a scale and an offset, so that planes do not tell them apart: what stands for
+// the background does, or outlines (depth_direction.c).
+// If neither decides, the renderer's usual kind is taken, unless all values lie within 0..1 and so can hardly be distances.
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "gbuffer/depth_direction.h"
 #include "gbuffer/normal_hypotheses.h"
 
 enum { SAMPLES = 1200, LOOKED_AT = 40000, MOST = DEPTH_KINDS };
@@ -14,6 +17,7 @@ static const double gain[2] = {2e-4, 0.3}; // of loss, and its share, that anoth
 static const double nearer = 0.25; // share of 1 - cosine, by the medians, that tells a better kind where edges spoil the means
 static const double most_ringing = 0.4,
                     ringing_share = 0.05; // past 0..1, of values that a filter with negative lobes leaves at edges
+static const double same_grey = 0.01;     // of a value, by which a lossy compression may set R, G and B apart
 static const double many_planes = 0.15;   // share of the looked-at pixels on planes from which they confirm a kind
 static const double bend = 1e-3;          // second difference over the first, below which a profile is a line
 
@@ -27,6 +31,7 @@ typedef struct trial {
 typedef struct values {
     size_t looked_at, negative, zero, one, within; // within: 0 < v < 1
     size_t beyond;                                 // v > 1, background left out, unless a filter's negative lobes explain it
+    size_t under;                                  // v < -1
 } values;
 
 static bool background(const build *b, double v)
@@ -42,7 +47,7 @@ static values look(const build *b)
     for (size_t i = 0; i < pixels; i += stride) {
         double v = plane_get(&b->position.z, (int)(i % (size_t)b->g->width), (int)(i / (size_t)b->g->width));
         if (background(b, v)) continue;
-        s.looked_at++, s.negative += v < 0.0, s.zero += v == 0.0, s.one += v == 1.0;
+        s.looked_at++, s.negative += v < 0.0, s.zero += v == 0.0, s.one += v == 1.0, s.under += v < -1.0;
         s.within += v > 0.0 && 1.0 > v, s.beyond += v > 1.0;
         ringing += v > 1.0 && v < 1.0 + most_ringing, below += v < 0.0 && v > -most_ringing;
     }
@@ -50,6 +55,15 @@ static values look(const build *b)
     if (s.negative == below && (double)below < ringing_share * (double)s.looked_at) s.negative = 0;
     return s;
 }
+
+// Both signs, more than a filter or a few broken pixels would leave.
+static bool both_signs(const values *s)
+{
+    size_t positive = s->looked_at - s->negative - s->zero;
+    return 50 * s->negative > s->looked_at && 50 * positive > s->looked_at;
+}
+
+static bool marks_background(const values *s, size_t count) { return 2000 * count > s->looked_at; }
 
 // Near and far by an option, or by names that headers use.
 static bool find_range(const build *b, double *near, double *far)
@@ -71,15 +85,34 @@ static bool find_range(const build *b, double *near, double *far)
 static bool no_range(build *b, const char *what)
 {
     return err_set(b->e, ERR_INPUT, b->file->path, NULL,
-                   "%s; give --depth-range NEAR FAR and, where it is not recognised, --depth-kind linear, inverted, zbuffer or "
-                   "reversed",
+                   "%s; give --depth-range NEAR FAR and, where it is not recognised, --depth-kind linear, inverted, zbuffer, "
+                   "reversed or ndc",
                    what);
+}
+
+// A depth in R, G and B is one value three times. If not, it is a picture of a depth, in false colours.
+static void question_colours(build *b)
+{
+    const plane others[2] = {build_plane(b, ROLE_DEPTH, 1), build_plane(b, ROLE_DEPTH, 2)};
+    size_t pixels = (size_t)b->g->width * (size_t)b->g->height, stride = pixels / LOOKED_AT + 1, seen = 0, odd = 0;
+    for (size_t i = 0; others[0].data && others[1].data && i < pixels; i += stride) {
+        int x = (int)(i % (size_t)b->g->width), y = (int)(i / (size_t)b->g->width);
+        double v = plane_get(&b->position.z, x, y), least = same_grey * fabs(v);
+        if (!isfinite(v)) continue;
+        seen++, odd += fabs(plane_get(&others[0], x, y) - v) > least || fabs(plane_get(&others[1], x, y) - v) > least;
+    }
+    if (100 * odd <= seen) return;
+    b->g->depth_verdict.doubtful = true;
+    log_warn(b->log, "depth-colours",
+             "the depth's R, G and B differ, as in a picture in false colours; R is taken as the depth (--depth names another "
+             "channel)");
 }
 
 bool depth_open(build *b)
 {
     depth_code *c = &b->position.code;
     if (!b->position.has_z) return true;
+    question_colours(b);
     b->g->depth_kind = b->r->depth == DEPTH_RADIAL ? DEPTH_RADIAL : DEPTH_PLANAR;
     values s = look(b);
     if (10 * s.negative > 9 * (s.looked_at - s.zero)) c->sign = s.looked_at > s.zero ? -1.0 : 1.0;
@@ -161,8 +194,9 @@ static int list_trials(const build *b, const values *s, trial list[MOST], bool *
     list[n].code = own;
     list[n++].code.kind = DEPTH_INVERSE;
     *range = find_range(b, &near, &far);
-    for (int k = DEPTH_LINEAR; *range && s->beyond == 0 && own.sign > 0.0 && k < DEPTH_KINDS; k++) {
+    for (int k = DEPTH_LINEAR; *range && s->beyond == 0 && k < DEPTH_KINDS; k++) {
         if (!(near > 0.0) && k >= DEPTH_ZBUFFER) break;
+        if (k == DEPTH_NDC ? s->under > 0 : own.sign < 0.0 || both_signs(s)) continue;
         list[n++].code = (depth_code){.kind = (depth_kind)k, .sign = 1.0, .near = near, .far = far};
     }
     for (int i = 0; i < n; i++) list[i].fit = (double)NAN, list[i].loss = INFINITY, list[i].flat = 0.0;
@@ -196,6 +230,30 @@ static int choose(const trial *list, int n, bool *confirmed)
     return best;
 }
 
+static int find_kind(const trial *list, int n, depth_kind k)
+{
+    for (int i = 0; i < n; i++)
+        if (list[i].code.kind == k) return i;
+    return -1;
+}
+
+// Planes confirm 1 / z and every z-buffer alike. What stands for the background tells them apart, else outlines. *open: nothing
+// does. False, with the error set, where it is a z-buffer without a range.
+static bool settle_hyperbolic(build *b, const values *s, const trial *list, int n, int *best, bool *open)
+{
+    depth_kind k = list[*best].code.kind;
+    if (k != DEPTH_INVERSE && k < DEPTH_ZBUFFER) return true;
+    if (s->beyond > 0 || s->under > 0 || b->g->camera.kind != CAMERA_PERSPECTIVE) return true;
+    bool told = b->options->depth_far > 0.0, zeros = marks_background(s, s->zero), ones = marks_background(s, s->one);
+    depth_direction d = ones == zeros ? depth_find_direction(b, true) : ones ? LARGER_IS_FARTHER : LARGER_IS_NEARER;
+    *open = d == LARGER_UNKNOWN && s->negative == 0;
+    k = s->negative > 0 ? DEPTH_NDC : d == LARGER_IS_FARTHER ? DEPTH_ZBUFFER : told ? DEPTH_REVERSED : DEPTH_INVERSE;
+    *best = find_kind(list, n, k);
+    if (*best >= 0 && !(*open && told)) return true;
+    return no_range(b, told ? "planes say that the depth is a z-buffer's, and nothing tells which of its ends is near"
+                            : "the depth is a z-buffer's, which is no distance, and its near and far are not known");
+}
+
 static void tell(build *b, const trial *list, int n, int best)
 {
     verdict *v = &b->g->depth_verdict;
@@ -221,23 +279,40 @@ static void doubt(build *b, const char *why)
              why, b->g->depth_verdict.reading);
 }
 
-// A background of 0 suggests 1 / z, where nearer surfaces have larger values. Asked only if no other evidence decides.
+// Nearer surfaces may have the larger values, as of 1 / z. Outlines tell; else a background of 0, which 1 / z has, says that it
+// may be so. Asked only if no other evidence decides.
 static void question_direction(build *b, const values *s, const trial *best, bool confirmed)
 {
-    bool open = 100 * s->zero > s->looked_at && s->beyond > 0 && s->negative == 0;
-    if (confirmed || !open || best->code.kind > DEPTH_RADIAL || b->g->camera.kind != CAMERA_PERSPECTIVE) return;
+    bool distance = s->beyond > 0 && s->negative == 0 && best->code.kind <= DEPTH_RADIAL;
+    if (confirmed || !distance || b->g->camera.kind != CAMERA_PERSPECTIVE) return;
+    depth_direction told = depth_find_direction(b, false);
+    if (told == LARGER_IS_FARTHER || (told == LARGER_UNKNOWN && s->zero == 0)) return;
     b->g->depth_verdict.doubtful = true;
     log_warn(b->log, "depth-doubt",
-             "the depth is 0 where there is nothing, as 1 / z is, and neither normals nor planes confirm a kind; it is taken as "
-             "%s (--depth-kind says what it is)",
+             "%s, and neither normals nor planes confirm a kind; it is taken as %s (--depth-kind says what it is)",
+             told == LARGER_IS_NEARER ? "outlines say that larger values of the depth lie nearer to the eye, as of 1 / z"
+                                      : "the depth is 0 where there is nothing, as 1 / z is",
              b->g->depth_verdict.reading);
+}
+
+// Distances have one sign. Where a filter or a few broken pixels do not explain the other, it is no distance.
+static void question_signs(build *b, const values *s, const trial *best)
+{
+    bool distance = best->code.kind <= DEPTH_INVERSE && b->g->camera.kind == CAMERA_PERSPECTIVE;
+    if (!distance || !both_signs(s)) return;
+    b->g->depth_verdict.doubtful = true;
+    log_warn(b->log, "depth-doubt",
+             "the depth has values of both signs, which no distance has; those of the lesser number count as nothing "
+             "(--depth names another channel, --depth-kind says what it is)");
 }
 
 // Values within 0..1 may be distances of a small scene, or no distances at all.
 static bool question(build *b, const values *s, const trial *best, bool confirmed, bool range)
 {
-    bool unit = s->beyond == 0 && s->negative == 0 && s->within > 0, ones = 2000 * s->one > s->looked_at;
+    bool unit = s->beyond == 0 && s->under == 0 && s->within > 0, ones = marks_background(s, s->one);
+    unit = unit && (s->negative == 0 || both_signs(s));
     question_direction(b, s, best, confirmed);
+    question_signs(b, s, best);
     if (!unit || best->code.kind == DEPTH_INVERSE || depth_needs_range(best->code.kind)) return true;
     if (confirmed && ones)
         doubt(b, "1 stands for nothing: its unit may be the distance of the far plane, in which radii are then measured");
@@ -261,7 +336,7 @@ bool depth_settle(build *b)
     }
     trial list[MOST];
     values s = look(b);
-    bool confirmed, range;
+    bool confirmed, range, open = false;
     int n = list_trials(b, &s, list, &range);
     evidence *scratch = mem_zero(1, sizeof *scratch, b->e);
     bool ok = scratch != NULL;
@@ -272,7 +347,9 @@ bool depth_settle(build *b)
     free(scratch);
     if (!ok) return false;
     int best = choose(list, n, &confirmed);
+    if (confirmed && !(list[best].fit >= fits) && !settle_hyperbolic(b, &s, list, n, &best, &open)) return false;
     tell(b, list, n, best);
+    if (open) doubt(b, "nothing tells 1 / z from a z-buffer's values");
     if (!question(b, &s, &list[best], confirmed, range)) return false;
     depth_kind kind = list[best].code.kind;
     if (kind <= DEPTH_RADIAL) {

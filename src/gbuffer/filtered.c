@@ -466,7 +466,7 @@ bool filtered_mend(build *b)
     repair r = {.b = b, .pixels = mem_pixels(total, sizeof *r.pixels, b->e)};
     if (!r.pixels) return false;
     const depth_kind k = b->position.code.kind;
-    r.inverse = !b->position.has_p && (k == DEPTH_INVERSE || k == DEPTH_ZBUFFER || k == DEPTH_REVERSED);
+    r.inverse = !b->position.has_p && (k == DEPTH_INVERSE || k >= DEPTH_ZBUFFER);
     r.radial = !b->position.has_p && b->g->depth_kind == DEPTH_RADIAL && b->g->camera.kind == CAMERA_PERSPECTIVE;
     if (b->position.has_p)
         r.nothing.p = camera_from_world(&b->g->camera, v3(0, 0, 0));

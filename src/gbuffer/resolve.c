@@ -295,6 +295,15 @@ static void guess_geometry(const search *s, resolution *out)
         }
 }
 
+// A depth found in the R of a picture: its G and B must say the same, which the pixels are asked.
+static void take_grey(const search *s, resolution *out)
+{
+    channel_ref r = out->channels[ROLE_DEPTH][0], g = layers_sibling(&s->index, r, "G"), b = layers_sibling(&s->index, r, "B");
+    channel_ref own = layers_sibling(&s->index, r, "R");
+    if (own.part != r.part || own.channel != r.channel || g.part < 0 || b.part < 0) return;
+    out->channels[ROLE_DEPTH][1] = g, out->channels[ROLE_DEPTH][2] = b, out->components[ROLE_DEPTH] = 3;
+}
+
 static bool find_roles(const search *s, resolution *out)
 {
     if (!name_roles(s, out)) return false;
@@ -305,6 +314,8 @@ static bool find_roles(const search *s, resolution *out)
         if (!name && detect(s, (role)r, out, &group, &row, &name)) take(out, (role)r, &group);
         if (r == ROLE_ALBEDO) out->albedo = albedo_named(s, row, name);
         if (r == ROLE_DEPTH && !out->components[ROLE_POSITION] && !out->components[ROLE_DEPTH]) guess_geometry(s, out);
+        bool one = name && (name == s->options->names[r] || strchr(name, '/')); // a channel by its own name
+        if (r == ROLE_DEPTH && out->components[ROLE_DEPTH] == 1 && !one) take_grey(s, out);
     }
     // The alpha that belongs to the beauty is the one in its own layer.
     if (out->components[ROLE_BEAUTY] && !s->options->names[ROLE_ALPHA]) {

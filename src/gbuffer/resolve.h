@@ -13,7 +13,7 @@
 typedef enum role {
     ROLE_POSITION,         // 3
     ROLE_NORMAL,           // 3
-    ROLE_DEPTH,            // 1
+    ROLE_DEPTH,            // 1; 3 where it fills a picture's R G B, of which the first counts
     ROLE_ALBEDO,           // 3
     ROLE_BEAUTY,           // 3
     ROLE_ALPHA,            // 1

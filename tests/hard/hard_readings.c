@@ -22,6 +22,7 @@ typedef struct readings {
     hard *h;
     master m;
     frame_result plain[2]; // without and with normals
+    bool no_range;         // --depth-range is not given
 } readings;
 
 static void set_options(readings *r, const reading_case *c)
@@ -35,7 +36,8 @@ static void set_options(readings *r, const reading_case *c)
         o->fov = 2.0 * atan(0.5 * m->width / m->view.camera.fx) / 0.017453292519943295;
     else if (c->position == ABSENT)
         o->ortho = m->width / m->view.camera.fx;
-    if (c->position == ABSENT && depth_needs_range(c->depth)) o->depth_range[0] = m->near, o->depth_range[1] = m->far;
+    if (c->position == ABSENT && depth_needs_range(c->depth) && !r->no_range)
+        o->depth_range[0] = m->near, o->depth_range[1] = m->far;
     log_free(&r->h->rig.log);
     log_init(&r->h->rig.log, LOG_QUIET);
 }
@@ -321,6 +323,29 @@ static void filtered_as_stored(void **state)
     printf("figure: filtered passes of every kind of value: at most %.4f rms\n", worst);
 }
 
+// Without normals. Planes say the same of 1 / z and of every z-buffer; the background tells them apart. A range that nobody knows
+// is asked for.
+static void depth_alone(void **state)
+{
+    static const struct {
+        depth_kind depth;
+        bool no_range;
+        outcome expected;
+    } forms[] = {{DEPTH_INVERSE, false, RIGHT}, {DEPTH_ZBUFFER, false, RIGHT},  {DEPTH_REVERSED, false, RIGHT},
+                 {DEPTH_NDC, false, RIGHT},     {DEPTH_ZBUFFER, true, REFUSED}, {DEPTH_NDC, true, REFUSED}};
+    readings *r = *state;
+    open_scene(r, SCENE_ROUND, 1);
+    for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+        const reading_case c = {.scene = SCENE_ROUND, .depth = forms[i].depth};
+        double rms;
+        r->no_range = forms[i].no_range;
+        outcome found = judge(r, &c, &rms);
+        if (found != forms[i].expected) fail_msg("%s: outcome %d, rms %.4f", word_of(depth_kind_words, c.depth), (int)found, rms);
+    }
+    r->no_range = false;
+    close_scene(r);
+}
+
 // Round surfaces are followed to their outlines.
 static void filtered_outlines(void **state)
 {
@@ -343,6 +368,7 @@ static void filtered_outlines(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_combination), cmocka_unit_test(filtered_against_closest),
-                                       cmocka_unit_test(filtered_as_stored), cmocka_unit_test(filtered_outlines)};
+                                       cmocka_unit_test(filtered_as_stored), cmocka_unit_test(filtered_outlines),
+                                       cmocka_unit_test(depth_alone)};
     return cmocka_run_group_tests(tests, open_readings, close_readings);
 }

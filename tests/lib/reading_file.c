@@ -138,13 +138,14 @@ static double stored_depth(const master *m, const reading_case *c, vec3 p)
 {
     double z = p.z, n = m->near, f = m->far, sign = c->negative_depth ? -1.0 : 1.0;
     double linear = (z - n) / (f - n), hyperbolic = f * (z - n) / (z * (f - n));
-    const double by_kind[DEPTH_KINDS] = {0, z, v3_length(p), 1.0 / z, linear, 1.0 - linear, hyperbolic, 1.0 - hyperbolic};
+    const double by_kind[DEPTH_KINDS] = {
+        0, z, v3_length(p), 1.0 / z, linear, 1.0 - linear, hyperbolic, 1.0 - hyperbolic, 2.0 * hyperbolic - 1.0};
     return sign * by_kind[c->depth];
 }
 
 static double background_depth(const reading_case *c)
 {
-    bool one = c->depth == DEPTH_LINEAR || c->depth == DEPTH_ZBUFFER;
+    bool one = c->depth == DEPTH_LINEAR || c->depth == DEPTH_ZBUFFER || c->depth == DEPTH_NDC;
     return one ? 1.0 : c->depth <= DEPTH_RADIAL && c->filter == FILTER_CLOSEST && !c->negative_depth ? 1e10 : 0.0;
 }
 

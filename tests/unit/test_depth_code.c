@@ -24,6 +24,8 @@ static double stored(depth_kind k, double z)
         return hyperbolic;
     case DEPTH_REVERSED:
         return 1.0 - hyperbolic;
+    case DEPTH_NDC:
+        return 2.0 * hyperbolic - 1.0;
     default:
         return z;
     }
@@ -49,9 +51,9 @@ static void background_is_none(void **state)
     const struct {
         depth_kind kind;
         double value;
-    } none[] = {{DEPTH_INVERSE, 0},   {DEPTH_INVERSE, -1},  {DEPTH_LINEAR, 1},     {DEPTH_LINEAR, 1.5},
-                {DEPTH_LINEAR, -0.1}, {DEPTH_INVERTED, 0},  {DEPTH_INVERTED, 1.5}, {DEPTH_ZBUFFER, 1},
-                {DEPTH_REVERSED, 0},  {DEPTH_REVERSED, -1}, {DEPTH_LINEAR, NAN},   {DEPTH_REVERSED, NAN}};
+    } none[] = {{DEPTH_INVERSE, 0},  {DEPTH_INVERSE, -1},   {DEPTH_LINEAR, 1},  {DEPTH_LINEAR, 1.5}, {DEPTH_LINEAR, -0.1},
+                {DEPTH_INVERTED, 0}, {DEPTH_INVERTED, 1.5}, {DEPTH_ZBUFFER, 1}, {DEPTH_REVERSED, 0}, {DEPTH_REVERSED, -1},
+                {DEPTH_LINEAR, NAN}, {DEPTH_REVERSED, NAN}, {DEPTH_NDC, 1},     {DEPTH_NDC, -1.5},   {DEPTH_NDC, NAN}};
     for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
         depth_code c = {none[i].kind, 1.0, nearest, farthest};
         assert_true(isnan(depth_decode(&c, none[i].value)));
