@@ -20,8 +20,14 @@ static bool has_token(const char *list, const char *token)
     return false;
 }
 
-// libepoxy ends the process when libEGL is missing, so we look first. The handle stays open: epoxy uses it in a moment.
+// libepoxy ends the process when libEGL or the library of OpenGL's functions is missing, so we look first. The handles stay open:
+// epoxy uses them in a moment.
 static bool have_egl(void) { return dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL) != NULL; }
+
+static bool have_gl(void)
+{
+    return dlopen("libGL.so.1", RTLD_LAZY | RTLD_LOCAL) != NULL || dlopen("libOpenGL.so.0", RTLD_LAZY | RTLD_LOCAL) != NULL;
+}
 
 static const char *client_extensions(void)
 {
@@ -220,7 +226,11 @@ bool gpu_open_as(gpu *g, gpu_request request, log_t *log, error *e)
     if (!request.hosted) gpu_set_up();
     if (!have_egl())
         return err_set(e, ERR_GL, NULL, NULL,
-                       "libEGL.so.1 cannot be loaded; install a GL driver (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri)");
+                       "libEGL.so.1 cannot be loaded; install a GL driver (Debian: libegl1 libopengl0 libegl-mesa0 "
+                       "libgl1-mesa-dri)");
+    if (!have_gl())
+        return err_set(e, ERR_GL, NULL, NULL,
+                       "neither libOpenGL.so.0 nor libGL.so.1 can be loaded; install one (Debian: libopengl0 or libgl1)");
     EGLDeviceEXT devices[MAX_DEVICES];
     int count = query_devices(devices);
     gpu_surroundings s = surroundings_of(devices, count);
@@ -259,7 +269,7 @@ void gpu_close(gpu *g)
 
 int gpu_list_devices(gpu_device *list, int max)
 {
-    if (!have_egl()) return 0;
+    if (!have_egl() || !have_gl()) return 0;
     EGLDeviceEXT devices[MAX_DEVICES];
     int count = query_devices(devices);
     for (int i = 0; i < count && i < max; i++) {

@@ -26,21 +26,23 @@ set -eu
 prefix=/opt/openexr
 make_it() { # FOLDER TARGET
     cmake -S "/$1" -B "/build-$1" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=$prefix -DCMAKE_INSTALL_LIBDIR=lib \
-        -DCMAKE_PREFIX_PATH=$prefix -DBUILD_TESTING=OFF -DBUILD_WEBSITE=OFF -DOPENEXR_FORCE_INTERNAL_DEFLATE=ON
+        -DCMAKE_PREFIX_PATH=$prefix -DBUILD_TESTING=OFF -DBUILD_WEBSITE=OFF -DOPENEXR_FORCE_INTERNAL_DEFLATE=ON \
+        -DCMAKE_C_FLAGS="-include /source/tests/dist/older_glibc.h"
     ninja -C "/build-$1" "$2"
 }
 make_it imath install
 # Of OpenEXR the core library alone, which is what this program links.
 make_it openexr OpenEXRCore
 for part in src/lib/OpenEXRCore cmake; do cmake -P /build-openexr/$part/cmake_install.cmake; done
-sed -i 's/^Libs:.*/Libs: -L${libdir} -lOpenEXRCore/; s/^Requires:.*//' $prefix/lib/pkgconfig/OpenEXR.pc
+sed -i 's/^Libs:.*/Libs: -L${libdir} -lOpenEXRCore/; s/^Requires:.*/Requires.private: Imath/' $prefix/lib/pkgconfig/OpenEXR.pc
 # This Debian's libdeflate came without one.
 printf 'Name: libdeflate\nDescription: deflate\nVersion: 1.7\nLibs: -ldeflate\n' >$prefix/lib/pkgconfig/libdeflate.pc
 cd /source
 mkdir /licences
 cp /openexr/LICENSE.md /licences/OpenEXR
 [ ! -e /openexr/external/OpenJPH/LICENSE ] || cp /openexr/external/OpenJPH/LICENSE /licences/OpenJPH
-LICENCES=/licences PKG_CONFIG_PATH=$prefix/lib/pkgconfig make dist BUILD=build VERSION="$1" PLUGIN='build/ssdo-images.so build/ssdo-trace.so'
+LICENCES=/licences PKG_CONFIG_PATH=$prefix/lib/pkgconfig make dist BUILD=build VERSION="$1" EXTRA_CFLAGS='-include tests/dist/older_glibc.h' \
+    PLUGIN='build/ssdo-images.so build/ssdo-trace.so'
 mkdir /unpacked
 tar x -C /unpacked -f build/*.tar.xz
 sh tests/dist/symbols.sh /unpacked 2.31 >/symbols || { cat /symbols; exit 1; }

@@ -41,3 +41,29 @@ grep -q "^ssdo-filter: ssdo.comp:$line: the driver refuses shader ssdo.comp: " "
 grep -q "^ssdo-filter: shader ssdo.comp: ssdo.comp:$line: " "$dir/err" || die "no log: $(cat "$dir/err")"
 grep -q "^ssdo-filter: gpu error in ssdo: ssdo.comp:$line: " "$dir/err" || echo "figure: this driver's debug messages do not tell of shaders"
 [ ! -e "$dir/c.exr" ] || die "an output is left"
+
+# Without EGL, or without the library of OpenGL's functions: libepoxy would end the process.
+cat >"$dir/without.c" <<'C'
+#include <dlfcn.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+void *dlopen(const char *name, int flags);
+void *dlopen(const char *name, int flags)
+{
+    void *(*next)(const char *, int);
+    *(void **)&next = dlsym(RTLD_NEXT, "dlopen");
+    const char *left_out = getenv("LEFT_OUT");
+    for (size_t n; name && *(left_out += strspn(left_out, " ")); left_out += n)
+        if (n = strcspn(left_out, " "), strncmp(name, left_out, n) == 0 && !name[n]) return NULL;
+    return next(name, flags);
+}
+C
+${CC:-cc} -D_GNU_SOURCE -shared -fPIC -o "$dir/without.so" "$dir/without.c" -ldl || die "no compiler"
+for missing in libEGL.so.1 'libOpenGL.so.0 libGL.so.1'; do
+    LEFT_OUT=$missing LD_PRELOAD=$dir/without.so run -q -o "$dir/none.exr" 2>"$dir/err"
+    code=$?
+    [ $code = 5 ] || die "without $missing: exit code $code: $(cat "$dir/err")"
+    grep -q "${missing%% *}.* can.* be loaded; install" "$dir/err" || die "without $missing: $(cat "$dir/err")"
+    LEFT_OUT=$missing LD_PRELOAD=$dir/without.so "$SSDO" --list-devices >"$dir/said" || die "--list-devices without $missing"
+done
