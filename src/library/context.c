@@ -97,28 +97,24 @@ static bool same_device(const options *a, const options *b)
     return a->device == b->device && a->require_gpu == b->require_gpu && a->gpu_debug == b->gpu_debug && a->threads == b->threads;
 }
 
-static bool open_for(ssdo_context *c, const options *o)
+// The job for a frame of these options; the frame itself opens the device, if it is not open.
+static void open_for(ssdo_context *c, const options *o)
 {
     if (c->opened && !same_device(&c->opened_for, o)) close_device(c);
     if (c->opened) {
         job_forget_light(&c->job); // which may be another's, or turned as another renderer has it
         c->job.o = o;
-        return true;
+        return;
     }
     job_open(&c->job, o, &c->log);
-    if (!job_open_device(&c->job, &c->e)) {
-        job_close(&c->job);
-        return false;
-    }
     c->job.stop = &c->stop;
     c->opened_for = *o;
-    return c->opened = true;
+    c->opened = true;
 }
 
 static bool filter_paths(ssdo_context *c, const char *const *paths, int count, ssdo_frame *f)
 {
-    job *j = &c->job;
-    return frame_read_files(j, paths, count, &f->result, &c->e) && !job_stopped(j) && frame_filter(j, &f->result, &c->e);
+    return frame_make(&c->job, paths, count, NULL, &f->result, &c->e);
 }
 
 static bool filter_memory(ssdo_context *c, const ssdo_input *in, ssdo_frame *f)
@@ -138,7 +134,8 @@ static void run_filter(void *of)
     ssdo_context *c = d->c;
     ssdo_frame *f = d->frame;
     ssdo_input in;
-    d->ok = struct_take(&in, sizeof in, d->input, "ssdo_input", &c->e) && open_for(c, &f->o) &&
+    open_for(c, &f->o);
+    d->ok = struct_take(&in, sizeof in, d->input, "ssdo_input", &c->e) &&
             (in.file_count > 0 && in.files ? filter_paths(c, in.files, in.file_count, f) : filter_memory(c, &in, f));
     strcpy(f->device, c->job.g.device);
     c->job.o = &c->o; // the frame may be freed before the next one

@@ -161,8 +161,7 @@ bool frame_run(job *j, const char *input, const char *output, frame_result *r, e
     return frame_run_files(j, &input, 1, output, NULL, r, e);
 }
 
-bool frame_run_files(job *j, const char *const *inputs, int count, const char *output, const frame_record *record,
-                     frame_result *r, error *e)
+bool frame_make(job *j, const char *const *inputs, int count, const frame_record *record, frame_result *r, error *e)
 {
     *r = (frame_result){0};
     if (!read_and_open(j, inputs, count, r, e)) return false;
@@ -170,7 +169,13 @@ bool frame_run_files(job *j, const char *const *inputs, int count, const char *o
     progress_step(j->progress);
     if (job_stopped(j) || !frame_filter(j, r, e)) return false;
     progress_step(j->progress);
-    if (!frame_write(j, r, output, e)) return false;
+    return true;
+}
+
+bool frame_run_files(job *j, const char *const *inputs, int count, const char *output, const frame_record *record,
+                     frame_result *r, error *e)
+{
+    if (!frame_make(j, inputs, count, record, r, e) || !frame_write(j, r, output, e)) return false;
     progress_step(j->progress);
     progress_finish(j->progress, 0);
     return true;

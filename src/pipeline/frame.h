@@ -73,9 +73,11 @@ bool frame_is_under_way(const frame_result *result);
 
 bool frame_write(const job *j, frame_result *result, const char *output, error *e);
 
-// All three. Where the device is not open yet, it is opened while the file is being read.
+// Reading and filtering, as the program and the library do it. Where the device is not open yet, it is opened while the file is
+// being read. record: NULL for none.
+bool frame_make(job *j, const char *const *inputs, int count, const frame_record *record, frame_result *result, error *e);
+// The same, and writing.
 bool frame_run(job *j, const char *input, const char *output, frame_result *result, error *e);
-// record: NULL for none.
 bool frame_run_files(job *j, const char *const *inputs, int count, const char *output, const frame_record *record,
                      frame_result *result, error *e);
 void frame_free(frame_result *result);

@@ -1,5 +1,5 @@
-// For the archive (oldest.sh): what glibc 2.29 gave a new version of, in the version before. The functions are the same; the newer ones
-// no longer call matherr, which nobody defines.
+// For the archive (oldest.sh): what glibc 2.29 gave a new version of, in the version before. The functions are the same; the
+// newer ones no longer call matherr, which nobody defines.
 #if defined(__x86_64__) && defined(__linux__)
 __asm__(".symver exp, exp@GLIBC_2.2.5");
 __asm__(".symver log, log@GLIBC_2.2.5");
