@@ -12,6 +12,11 @@
 #include "include/frame.glsl"
 #include "include/bilateral.glsl"
 
+#define SCALARS 0
+#define COLOURS 1
+#define COLOUR vec4 // m, c, m^2, c^2
+#include "include/values.glsl"
+
 #include "params/denoise.glsl"
 
 PICTURE(r32f, estimate_image);
@@ -28,32 +33,19 @@ TARGET(1, float, r32f, error_out);
 #endif
 #endif
 
-vec4 moments_at(ivec2 q) {
+Values load(ivec2 q) {
 #ifdef ACROSS
     float m = FETCH(estimate_image, q).r, c = FETCH(half_difference_image, q).r;
-    return vec4(m, c, m * m, c * c);
+    return Values(vec4(m, c, m * m, c * c));
 #else
-    return FETCH(moments_image, q);
+    return Values(FETCH(moments_image, q));
 #endif
 }
+#include "include/bilateral_line.glsl"
 
 void denoise(ivec2 p) {
     float depth = depth_at(p);
-    vec4 centre = moments_at(p), sum = vec4(0.0);
-    float total = 1.0;
-    if (depth != 0.0) {
-        Centre c = centre_at(p, depth, params.sharpness, params.radius);
-        // Differences from the centre are summed, so that a constant passes unchanged to the bit.
-        for (int i = -params.radius; i <= params.radius; i++) {
-            ivec2 q = p + i * STEP;
-            if (i == 0) continue;
-            float w = tap_weight(c, q, float(i));
-            if (w == 0.0) continue;
-            sum += w * (moments_at(q) - centre);
-            total += w;
-        }
-    }
-    vec4 mean = centre + sum / total;
+    vec4 mean = mean_along(p, depth, STEP, params.sharpness, params.radius).colour0;
 #ifdef ACROSS
     PUT(moments_out, p, mean);
 #else

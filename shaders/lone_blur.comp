@@ -5,6 +5,10 @@
 #include "include/frame.glsl"
 #include "include/bilateral.glsl"
 
+#define SCALARS 0
+#define COLOURS 1
+#define COLOUR vec4 // the scalar is the fourth number
+#include "include/values.glsl"
 #include "params/blur.glsl"
 
 #ifdef VISIBILITY
@@ -12,18 +16,18 @@ layout(r32f) uniform image2D scalar_image;
 #endif
 layout(rgba32f) uniform image2D colour_image;
 layout(std430) readonly buffer Lone { uint lone[]; }; // tile: x the first of the list's pixels, y their end
-layout(std430) buffer Values { vec4 values[]; };
+layout(std430) buffer Filtered { vec4 filtered[]; };
 
-vec4 value_at(ivec2 p) {
+Values load(ivec2 p) {
     vec4 v = imageLoad(colour_image, p);
 #ifdef VISIBILITY
     v.a = imageLoad(scalar_image, p).r;
 #endif
-    return v;
+    return Values(v);
 }
 
-vec4 filtered(ivec2 p) {
-    vec4 centre = value_at(p), sum = vec4(0.0);
+Values mean_around(ivec2 p) {
+    Values centre = load(p), sum = values_of(0.0, vec4(0.0));
     Centre c = centre_at(p, depth_at(p), params.sharpness, params.radius);
     float total = 1.0;
     for (int y = -params.radius; y <= params.radius; y++)
@@ -32,10 +36,10 @@ vec4 filtered(ivec2 p) {
             if (x == 0 && y == 0) continue;
             float w = tap_weight(c, q, length(vec2(x, y)));
             if (w == 0.0) continue;
-            sum += w * (value_at(q) - centre);
+            sum = add(sum, w, load(q), centre);
             total += w;
         }
-    return centre + sum / total;
+    return mean_of(centre, sum, total);
 }
 
 void main() {
@@ -43,11 +47,11 @@ void main() {
     if (item >= uint(tile.y)) return;
     ivec2 p = ivec2(lone[item] & 0xffffu, lone[item] >> 16u);
 #ifdef SCATTER
-    imageStore(colour_image, p, vec4(values[item].rgb, 0.0));
+    imageStore(colour_image, p, vec4(filtered[item].rgb, 0.0));
 #ifdef VISIBILITY
-    imageStore(scalar_image, p, vec4(values[item].a));
+    imageStore(scalar_image, p, vec4(filtered[item].a));
 #endif
 #else
-    values[item] = filtered(p);
+    filtered[item] = mean_around(p).colour0;
 #endif
 }

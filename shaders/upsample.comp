@@ -3,11 +3,14 @@
 // pixels. A small pixel weighs less the further it lies off the pixel's tangent plane (in small footprints) and the more its normal
 // differs (as in blur.comp). If none of the four is on the pixel's surface, the pixel copies the best of sixteen. If no surface is near
 // (a speck seen edge-on), the pixel is open; with OPEN_LIGHT its colour 0 is the SH irradiance / pi.
-// SCALARS and COLOURS say how many r32f and rgba32f images go through together.
+// SCALARS and COLOURS say how many pictures go through together (include/values.glsl).
+#define COLOUR vec4
 #include "include/frame.glsl"
 #ifdef OPEN_LIGHT
 #include "include/environment.glsl"
 #endif
+#include "include/values.glsl"
+#include "include/value_images.glsl"
 
 #include "params/upsample.glsl"
 // Copies made before main: llvmpipe reads a uniform inside any control flow once for every lane.
@@ -16,57 +19,6 @@ float sharpness = params.sharpness;
 
 PICTURE(r32f, small_depth);
 PICTURE(rgba32f, small_normal);
-#if SCALARS > 0
-PICTURE(r32f, scalar0_in);
-TARGET(0, float, r32f, scalar0_out);
-#endif
-#if SCALARS > 1
-PICTURE(r32f, scalar1_in);
-TARGET(1, float, r32f, scalar1_out);
-#endif
-#if COLOURS > 0
-PICTURE(rgba32f, colour0_in);
-TARGET(2, vec4, rgba32f, colour0_out);
-#endif
-#if COLOURS > 1
-PICTURE(rgba32f, colour1_in);
-TARGET(3, vec4, rgba32f, colour1_out);
-#endif
-
-struct Values { float scalar0, scalar1; vec4 colour0, colour1; };
-const Values OPEN = Values(1.0, 1.0, vec4(0.0), vec4(0.0)), ZERO = Values(0.0, 0.0, vec4(0.0), vec4(0.0));
-
-Values load(ivec2 q) {
-    Values v = ZERO;
-#if SCALARS > 0
-    v.scalar0 = FETCH(scalar0_in, q).r;
-#endif
-#if SCALARS > 1
-    v.scalar1 = FETCH(scalar1_in, q).r;
-#endif
-#if COLOURS > 0
-    v.colour0 = FETCH(colour0_in, q);
-#endif
-#if COLOURS > 1
-    v.colour1 = FETCH(colour1_in, q);
-#endif
-    return v;
-}
-
-void store(ivec2 p, Values v) {
-#if SCALARS > 0
-    PUT(scalar0_out, p, v.scalar0);
-#endif
-#if SCALARS > 1
-    PUT(scalar1_out, p, v.scalar1);
-#endif
-#if COLOURS > 0
-    PUT(colour0_out, p, v.colour0);
-#endif
-#if COLOURS > 1
-    PUT(colour1_out, p, v.colour1);
-#endif
-}
 
 float small_depth_at(ivec2 q) {
     bool inside = all(greaterThanEqual(q, ivec2(0))) && all(lessThan(q, small_size));
@@ -102,7 +54,7 @@ ivec2 best_of(ivec2 base, vec3 P, vec3 N, float scale, bool wanted) {
 
 // For a pixel that none of the four is near.
 Values lost(ivec2 base, vec3 P, vec3 N, float scale, bool wanted) {
-    Values v = OPEN;
+    Values v = values_of(1.0, vec4(0.0)); // open
     ivec2 best = best_of(base, P, N, scale, wanted);
     for (int n = best.x >= 0 ? 0 : 1; n < 1; n++) v = load(best);
 #ifdef OPEN_LIGHT
@@ -118,8 +70,7 @@ void upsample(ivec2 p) {
     vec2 place = 0.5 * (vec2(p) + 0.5) - 0.5;
     ivec2 base = ivec2(floor(place));
     vec2 part = place - vec2(base);
-    // Differences from one tap are summed, so that a constant passes unchanged to the bit.
-    Values start = OPEN, sum = ZERO;
+    Values start = values_of(1.0, vec4(0.0)), sum = values_of(0.0, vec4(0.0)); // start: of the first tap that holds a surface
     float total = 0.0;
     bool none = true;
     for (int k = 0; k < (depth != 0.0 ? 4 : 0); k++) {
@@ -131,18 +82,10 @@ void upsample(ivec2 p) {
         Values v = load(q);
         if (none) start = v;
         none = false;
-        sum.scalar0 += w * (v.scalar0 - start.scalar0);
-        sum.scalar1 += w * (v.scalar1 - start.scalar1);
-        sum.colour0 += w * (v.colour0 - start.colour0);
-        sum.colour1 += w * (v.colour1 - start.colour1);
+        sum = add(sum, w, v, start);
         total += w;
     }
-    if (total > 1e-3) {
-        start.scalar0 += sum.scalar0 / total;
-        start.scalar1 += sum.scalar1 / total;
-        start.colour0 += sum.colour0 / total;
-        start.colour1 += sum.colour1 / total;
-    }
+    if (total > 1e-3) start = mean_of(start, sum, total);
     bool wanted = depth != 0.0 && total <= 1e-3;
     Values other = lost(base, P, N, scale, wanted);
     if (wanted) start = other;

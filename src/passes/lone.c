@@ -27,9 +27,9 @@ static bool run_over(pass_context *c, const gpu_buffer *lone, pass_call call, er
 
 static bool filter(pass_context *c, const gpu_buffer *lone, const gpu_image *scalar, const gpu_image *colour, error *e)
 {
-    gpu_buffer values = {0};
+    gpu_buffer filtered = {0};
     const blur_params params = {.radius = c->set.blur, .sharpness = SHARPNESS};
-    bool ok = gpu_buffer_make(c->g, &values, NULL, c->lone->count * 4 * sizeof(float), "single pixels", e);
+    bool ok = gpu_buffer_make(c->g, &filtered, NULL, c->lone->count * 4 * sizeof(float), "single pixels", e);
     for (int scatter = 0; ok && scatter < 2; scatter++) {
         variant v = {{0}};
         variant_add(&v, scalar && scalar->id, "VISIBILITY");
@@ -39,10 +39,10 @@ static bool filter(pass_context *c, const gpu_buffer *lone, const gpu_image *sca
                                   .variant = v.words,
                                   PASS_PARAMS(params),
                                   .writes = {{"colour_image", colour}, {"scalar_image", scalar}},
-                                  .buffers = {{"Values", &values}}},
+                                  .buffers = {{"Filtered", &filtered}}},
                       e);
     }
-    gpu_buffer_free(&values);
+    gpu_buffer_free(&filtered);
     return ok;
 }
 
