@@ -57,7 +57,7 @@ GLSL     := $(SHADERS) $(wildcard shaders/include/*.glsl shaders/params/*.glsl)
 # What decides pixels, beside the settings and the inputs: a change of it makes --skip-existing make frames again.
 DECIDES  := $(sort $(GLSL) $(wildcard src/exr/*.[ch] src/gbuffer/*.[ch] src/light/*.[ch] src/passes/*.[ch] src/plugin/*_shim.cpp) \
               src/base/half.c src/base/half.h src/base/sort.c src/base/vec.h src/base/words.c src/base/words.h src/gpu/program.c \
-              $(foreach f,filter frame job layers output output_names output_view plan read read_back relight settings steps views,src/pipeline/$(f).c src/pipeline/$(f).h))
+              $(foreach f,filter frame job layers output output_names output_view plan prepare read read_back relight result settings steps views,src/pipeline/$(f).c src/pipeline/$(f).h))
 BIN      := $(BUILD)/ssdo-filter
 # The library, src/ssdo.h: the rooms as one object that shows nothing but ssdo_*.
 SONAME   := libssdo.so.$(shell sed -n 's/^.define SSDO_INTERFACE //p' src/ssdo.h)
@@ -151,7 +151,7 @@ $(BUILD)/methods.c: $(METHODS) src/passes/methods.sh
 $(BUILD)/methods.o: $(BUILD)/methods.c src/passes/method.h
 	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $< $(KEEP_WARNINGS)
 
-$(BUILD)/decides.c: $(DECIDES) src/pipeline/decides.sh
+$(BUILD)/decides.c: $(DECIDES) src/pipeline/decides.sh Makefile
 	@mkdir -p $(@D)
 	$(Q)LC_ALL=C sh src/pipeline/decides.sh $(DECIDES) >$@.tmp && mv $@.tmp $@
 $(BUILD)/decides.o: $(BUILD)/decides.c src/pipeline/decides.h $(BUILD)/flags

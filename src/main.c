@@ -18,6 +18,7 @@
 #include "pipeline/explain.h"
 #include "pipeline/files.h"
 #include "pipeline/frame.h"
+#include "pipeline/inputs.h"
 #include "pipeline/preview.h"
 #include "pipeline/report.h"
 #include "pipeline/resume.h"
@@ -81,13 +82,13 @@ static bool check_targets(const options *o, error *e)
 static bool run_on(const options *o, run_files *files, const volatile int *stop_signal, log_t *log, error *e)
 {
     job j;
-    if (!batch_is(o) && !run_files_check(files, (const int[]){0}, 1, e)) return false;
+    if (!inputs_are_framed(o) && !run_files_check(files, (const int[]){0}, 1, e)) return false;
     if (!run_files_read(files, o, e)) return false;
     job_open(&j, o, log);
     j.stop = stop_signal;
     j.no_floats = !o->preview;
     j.files = files;
-    bool ok = check_targets(o, e) && (batch_is(o) ? batch_run(&j, e) : run_frame(&j, e));
+    bool ok = check_targets(o, e) && (inputs_are_framed(o) ? batch_run(&j, e) : run_frame(&j, e));
     job_close(&j);
     return ok;
 }

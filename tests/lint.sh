@@ -28,7 +28,7 @@ refuse 'names what is not in the tree' "$(grep -rnIiE 'the seeds|the lecture|cha
     src shaders tests --include='*.*' --exclude=lint.sh || true)"
 refuse 'names a file that is not there' "$(grep -rnoIE '\b(src|shaders|tests|samples|man)/[A-Za-z0-9_/]+\.(md|c|h|cpp|comp|glsl|sh|py|json|1)\b' \
     README.md src shaders tests man | while IFS=: read -r file line name; do [ -e "$name" ] || echo "$file:$line: $name"; done)"
-refuse 'include each other' "$(grep -o '^#include "[^"]*"' src/*/*.h | sed 's/^src\///; s/:#include//; s/"//g' | tsort 2>&1 >/dev/null || true)"
+refuse 'include each other in a circle' "$(python3 tests/include_circles.py src)"
 
 # A room of src includes those before it in this list alone (src/README.md).
 later=

@@ -143,18 +143,19 @@ typedef struct options {
     completion_part completion; // to be printed instead
 } options;
 
+// In parse.c.
 void options_defaults(options *o);
 
 // Fills *o from argv. ERR_USAGE names the offending option and how to get help. Numbers are read in the C locale.
 bool options_parse(int argc, char **argv, options *o, error *e);
 
-// The OPTIONS section of the man page in mdoc(7)/man(7) source; man/ssdo-filter.1 holds its output between markers, a test
-// compares.
+// In options_print.c. The OPTIONS section of the man page in mdoc(7)/man(7) source; man/ssdo-filter.1 holds its output between
+// markers, a test compares.
 void options_print_man(FILE *to);
 
-// The settings that change pixels, as they would be typed ("--method ssdo --samples 64"), options at their default left out: the
-// header attribute ssdo/args. Before them, as a shell takes them, the environment variables that can change pixels
-// (base/knobs.h). No paths but base names, no frames, threads, device, host or time. To be freed; NULL with ERR_MEMORY.
+// In options_record.c. The settings that change pixels, as they would be typed ("--method ssdo --samples 64"), options at their
+// default left out: the header attribute ssdo/args. Before them, as a shell takes them, the environment variables that can change
+// pixels (base/knobs.h). No paths but base names, no frames, threads, device, host or time. To be freed; NULL with ERR_MEMORY.
 char *options_record(const options *o, error *e);
 
 // Adds every setting that decides the bytes of the output, by name and value: those of the record, and how the file is laid out.

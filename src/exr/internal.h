@@ -6,8 +6,7 @@
 
 #include <openexr.h>
 
-#include "exr/file.h"
-#include "exr/write.h"
+#include "exr/out_part.h"
 
 // Limits of what is read. They bound memory for hostile headers and keep every product below 2^63 (the library multiplies some
 // of these as int).

@@ -21,7 +21,7 @@
 #include <stdbool.h>
 
 #include "gbuffer/encoding.h"
-#include "gbuffer/resolve.h"
+#include "gbuffer/resolution.h"
 
 enum { CONVENTION_PATTERNS = 10, CONVENTION_MARKS = 4 };
 

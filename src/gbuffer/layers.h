@@ -2,7 +2,7 @@
 #ifndef SSDO_GBUFFER_LAYERS_H
 #define SSDO_GBUFFER_LAYERS_H
 
-#include "gbuffer/resolve.h"
+#include "gbuffer/resolution.h"
 
 enum { LAYER_NAME = 512, LAYER_KEY = 128, EXRIO_NAME_ROOM = 256, LAYERS_TEXT = 3000 }; // the last: of a list of them
 

@@ -1,4 +1,4 @@
-#include "library/context.h"
+#include "library/objects.h"
 
 #include <stdio.h>
 #include <stdlib.h>

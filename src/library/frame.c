@@ -2,7 +2,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "library/context.h"
+#include "library/objects.h"
 #include "library/struct_size.h"
 
 // The view and layer of an index, counted over the views. False beyond the last.

@@ -2,7 +2,7 @@
 #ifndef SSDO_LIBRARY_SETTINGS_H
 #define SSDO_LIBRARY_SETTINGS_H
 
-#include "library/context.h"
+#include "library/objects.h"
 
 // Makes a setting, or with value NULL takes it back, if all settings together are then right; else nothing changes.
 bool settings_make(ssdo_context *c, const char *name, const char *value, error *e);

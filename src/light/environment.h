@@ -14,14 +14,9 @@
 #ifndef SSDO_LIGHT_ENVIRONMENT_H
 #define SSDO_LIGHT_ENVIRONMENT_H
 
-#include <stdbool.h>
-#include <stddef.h>
-
 #include "base/error.h"
 #include "base/log.h"
-#include "base/vec.h"
-
-enum { ENV_MAX_LEVELS = 16, ENV_MAX_SIZE = 32768 };
+#include "light/env_map.h"
 
 typedef struct env_options {
     const char *path; // NULL: the white environment of radiance 1 (a 1x1 map)
@@ -34,21 +29,6 @@ typedef struct env_options {
     int threads;
 } env_options;
 
-typedef struct env_level {
-    int width, height;
-    float *rgba; // 4 a texel, a = 0
-} env_level;
-
-typedef struct environment {
-    bool white; // no map was given
-    mat3 map_from_world;
-    env_level levels[ENV_MAX_LEVELS]; // level 0 is the map itself; each next one halves both sizes (down to 1x1), its texels the
-    int level_count;  // solid-angle weighted means of what they cover, so that every level integrates to the same light
-    double sh[16][3]; // plain radiance coefficients L_lm, l <= 3, index l*l + l + m, in map space
-    double mean[3];   // mean radiance over the sphere
-    size_t repaired;  // texels that were NaN, infinite or negative
-} environment;
-
 // Reads options->path and prepares it. EXR is read by exr/file.h (the first R G B of the first part that has them, else a single
 // Y; a data window smaller than a 2:1 display window is completed with black), all else by the OpenImageIO module.
 bool environment_load(const env_options *options, environment *out, log_t *log, error *e);
@@ -56,14 +36,6 @@ bool environment_load(const env_options *options, environment *out, log_t *log, 
 // messages.
 bool environment_prepare(const float *rgb, int width, int height, const env_options *options, environment *out, log_t *log,
                          error *e);
-void environment_free(environment *env);
-
-// Radiance of level `level` by bilinear lookup (wrapping in u, clamped in v), map-space direction: what the shaders see.
-vec3 environment_lookup(const environment *env, vec3 map_direction, double level);
-
-// Exact solid angle of texel row j of a width x height lat-long map: (2 pi / width) (cos(pi j / height) - cos(pi (j + 1) /
-// height)).
-double env_texel_solid_angle(int width, int height, int j);
 
 // E / pi for a unit normal, by summing every texel of level 0: the slow reference. Texels above the horizon count exactly, those
 // that the horizon cuts are subdivided down to 0.1 degrees.

@@ -11,7 +11,7 @@
 #include "base/infile.h"
 #include "base/mem.h"
 #include "exr/file.h"
-#include "light/environment.h"
+#include "light/env_map.h"
 #include "light/reduce.h"
 #include "plugin/images.h"
 

@@ -6,7 +6,8 @@
 #ifndef SSDO_LIGHT_MIPS_H
 #define SSDO_LIGHT_MIPS_H
 
-#include "light/environment.h"
+#include "base/error.h"
+#include "light/env_map.h"
 
 // Levels 1 and up of env, down to 1x1, from level 0. On failure the levels made so far belong to env all the same.
 bool mips_build(environment *env, int threads, error *e);

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "light/environment.h"
+#include "light/env_map.h"
 
 // Bytes a texel from here on: this map, its levels, and both on the device, which may be this machine's memory.
 static const double LATER = 12 + 2 * 16 * 4.0 / 3.0;

@@ -1,6 +1,6 @@
 #include "passes/images.h"
 
-#include "passes/pass.h"
+#include "gbuffer/gbuffer.h"
 
 const image_row image_table[IMAGE_COUNT] = {
 #define IMAGE(id, ...) [IMAGE_##id] = {__VA_ARGS__},

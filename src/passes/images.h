@@ -95,6 +95,15 @@ typedef struct image_row {
     bool (*pass)(struct pass_context *c, error *e); // that makes it and is run for nothing else; NULL: none
 } image_row;
 
+// The passes of those rows.
+#define IMAGE(id, ...)
+#define LAYER(id, ...)
+#define PASS_LAYER(id, pass, ...) bool pass(struct pass_context *c, error *e);
+#include "passes/image_rows.h"
+#undef IMAGE
+#undef LAYER
+#undef PASS_LAYER
+
 extern const image_row image_table[IMAGE_COUNT];
 extern const image_row *const layer_table[LAYER_COUNT];
 

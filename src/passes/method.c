@@ -27,6 +27,16 @@ const bounce_kind *bounce_find(const char *name)
     return NULL;
 }
 
+bool variants_of_maker(int maker, const variant_row **rows)
+{
+    *rows = NULL;
+    for (const method *const *m = methods; *m; m++)
+        if (maker-- == 0) return *rows = (*m)->variants, true;
+    for (const bounce_kind *const *b = bounces; *b; b++)
+        if (maker-- == 0) return *rows = (*b)->variants, true;
+    return false;
+}
+
 static void append(char *text, size_t size, const char *before, const char *name)
 {
     size_t used = strlen(text);

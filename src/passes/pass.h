@@ -239,13 +239,4 @@ bool pass_edges(pass_context *c, error *e);                   // fills the layer
 bool pass_specular(pass_context *c, error *e);                // material, albedo -> specular, diffuse_share
 bool pass_composite(pass_context *c, error *e);               // layers -> composite
 
-// Passes whose layer no other pass needs.
-#define IMAGE(id, ...)
-#define LAYER(id, ...)
-#define PASS_LAYER(id, pass, ...) bool pass(pass_context *c, error *e);
-#include "passes/image_rows.h"
-#undef IMAGE
-#undef LAYER
-#undef PASS_LAYER
-
 #endif

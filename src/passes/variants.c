@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "passes/method.h"
-
 // The composite of a beauty, and the composite that is lit by us: its light, its background, the rest.
 #define BEHIND(light, background)                                                                                                \
     "RELIGHT ALBEDO " light " " background " [COVERAGE] [INDIRECT] [EMISSION] [DIFFUSE] [DEPTHMASK] | "                          \
@@ -53,8 +51,8 @@ static const variant_row *row_of(const variant_row *list, int *i)
 const variant_row *variant_row_at(int i)
 {
     const variant_row *row = row_of(shared, &i);
-    for (const method *const *m = methods; !row && *m; m++) row = row_of((*m)->variants, &i);
-    for (const bounce_kind *const *b = bounces; !row && *b; b++) row = row_of((*b)->variants, &i);
+    const variant_row *own;
+    for (int maker = 0; !row && variants_of_maker(maker, &own); maker++) row = row_of(own, &i);
     return row;
 }
 

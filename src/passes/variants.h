@@ -18,6 +18,8 @@ typedef struct variant_row {
     bool exact;    // it is also dispatched where passes are drawn
 } variant_row;
 
+// The rows of a method or bounce, numbered from 0 on; false after the last. In method.c: nothing here knows what a method is.
+bool variants_of_maker(int maker, const variant_row **rows);
 const variant_row *variant_row_at(int i); // all rows, from 0 on; NULL after the last
 
 enum { VARIANT_TEXT = 256 };

@@ -50,8 +50,6 @@ typedef struct batch {
     sequence_report report;
 } batch;
 
-bool batch_is(const options *o) { return o->frames || (o->input_count > 0 && !o->literal && pattern_is(o->inputs[0])); }
-
 static bool stopping(const batch *b) { return job_stopped(b->j) || b->give_up; }
 
 static slot *slot_of(batch *b, int index) { return &b->slots[index % b->in_flight]; }

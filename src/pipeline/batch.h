@@ -12,9 +12,6 @@
 
 enum { BATCH_IN_FLIGHT = 3, BATCH_MOST_IN_FLIGHT = 4 };
 
-// True if the options ask for a sequence: a frame place in the input, or --frames.
-bool batch_is(const options *o);
-
 // Runs the sequence. A frame that fails leaves its target as it was; with --keep-going the next frames are done all the same. At
 // the end ERR_FRAMES lists what failed, as --frames takes it. One summary line a frame on standard output, unless quiet. When the
 // job is stopped, frames under way are dropped unless they are already being written, a line says how far it got, and the batch

@@ -97,7 +97,7 @@ static bool first_frame(const options *o, int *frame, error *e)
 {
     frame_list frames = {0};
     *frame = 0;
-    if (!batch_is(o)) return true;
+    if (!inputs_are_framed(o)) return true;
     bool ok = o->frames ? frames_parse(o->frames, &frames, e) : pattern_scan(o->inputs[0], &frames, e);
     if (ok && frames.count == 0) ok = err_set(e, ERR_INPUT, o->inputs[0], NULL, "no file fits this pattern");
     if (ok) *frame = frames.frames[0];

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/infile.h"
-#include "pipeline/batch.h"
+#include "pipeline/inputs.h"
 
 enum { MOST_BYTES = 1 << 28 };
 
@@ -67,7 +67,7 @@ bool extras_are_done(const job *j, int frame, const frame_record *r)
     char path[FILE_PATH], text[DIGEST_TEXT + 2], wanted[DIGEST_TEXT + 1];
     for (int i = 0; i < j->files->count; i++) {
         const run_file *f = &j->files->list[i];
-        bool preview = f->kind == FILE_PREVIEW, report = f->kind == FILE_REPORT && (f->framed || !batch_is(j->o));
+        bool preview = f->kind == FILE_PREVIEW, report = f->kind == FILE_REPORT && (f->framed || !inputs_are_framed(j->o));
         if ((!preview && !report) || !run_file_path(f, frame, path, sizeof path)) continue;
         digest_format(preview ? r->preview : r->sampled, wanted);
         if (report && !report_says(path, wanted)) return false;

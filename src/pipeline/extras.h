@@ -2,7 +2,7 @@
 #ifndef SSDO_PIPELINE_EXTRAS_H
 #define SSDO_PIPELINE_EXTRAS_H
 
-#include "pipeline/frame.h"
+#include "pipeline/result.h"
 
 // The preview and the report that the run would write for the frame, as far as it would. A report about a whole sequence is
 // written by every run, and is none of these.

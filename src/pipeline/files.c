@@ -14,7 +14,7 @@
 #include "cli/frames.h"
 #include "exr/file.h"
 #include "gbuffer/mesh.h"
-#include "pipeline/batch.h"
+#include "pipeline/inputs.h"
 #include "plugin/colour.h"
 
 // --- the table ---
@@ -55,7 +55,7 @@ static bool add_materials(const options *o, run_files *f, error *e)
 
 bool run_files_list(const options *o, run_files *out, error *e)
 {
-    bool framed = false, many = batch_is(o), converts = o->env_colorspace || o->albedo_colorspace;
+    bool framed = false, many = inputs_are_framed(o), converts = o->env_colorspace || o->albedo_colorspace;
     *out = (run_files){0};
     if (!proxies_are_framed(o, &framed, e)) return false;
     const run_file others[] = {

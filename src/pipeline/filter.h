@@ -2,7 +2,7 @@
 #ifndef SSDO_PIPELINE_FILTER_H
 #define SSDO_PIPELINE_FILTER_H
 
-#include "pipeline/frame.h"
+#include "pipeline/result.h"
 
 // What the CPU does for the passes, from result->gb, set and plan. On any thread, but on no result twice at a time.
 bool filter_prepare(const job *j, frame_result *result, error *e);

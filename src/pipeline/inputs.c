@@ -5,6 +5,8 @@
 
 #include "cli/frames.h"
 
+bool inputs_are_framed(const options *o) { return o->frames || (o->input_count > 0 && !o->literal && pattern_is(o->inputs[0])); }
+
 bool inputs_of_frame(const options *o, int frame, input_paths *out)
 {
     out->count = o->input_count;

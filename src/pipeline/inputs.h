@@ -1,4 +1,5 @@
-// The input files of one frame: those of the command line, with the frame's number in their places.
+// The input files: whether they are a sequence, and those of one frame: the names of the command line, with the frame's number in
+// their places.
 #ifndef SSDO_PIPELINE_INPUTS_H
 #define SSDO_PIPELINE_INPUTS_H
 
@@ -11,6 +12,9 @@ typedef struct input_paths {
     const char *list[OPT_MAX_INPUTS];
     int count;
 } input_paths;
+
+// Whether the options ask for a sequence: a frame place in the input, or --frames.
+bool inputs_are_framed(const options *o);
 
 // A name without a place for the frame is the same file in every frame. False if a path does not fit.
 bool inputs_of_frame(const options *o, int frame, input_paths *out);

@@ -35,22 +35,12 @@ static int compression_of(const options *o, const exrio_part *part)
     return part->compression > (int)EXR_COMPRESSION_PIZ ? EXR_COMPRESSION_ZIP : part->compression;
 }
 
-// Made anew, for the view or (where names tell views) any that comes after it in the list.
-static bool is_replaced(const job *j, const frame_result *r, const char *channel, bool merged)
-{
-    for (bool in_names = view_in_names(r->file, r->view); r; r = in_names ? r->next_view : NULL) {
-        const naming n = naming_of(j, r);
-        if (name_is_ours(&n, &r->plan, channel) || (merged && j->o->main_composite && name_is_main(&n, channel))) return true;
-    }
-    return false;
-}
-
 // The input's channels of one part that are passed through, appended to out.
 static int keep_channels(const job *j, const frame_result *r, const exrio_part *part, bool merged, exrio_out_channel *out)
 {
     int n = 0;
     for (int c = 0; c < part->channel_count; c++)
-        if (!is_replaced(j, r, part->channels[c].name, merged))
+        if (!name_is_replaced(j, r, part->channels[c].name, merged))
             out[n++] = (exrio_out_channel){part->channels[c].name, part->channels[c].type, part->channels[c].data};
     return n;
 }
@@ -62,9 +52,6 @@ static bool share_a_name(const exrio_part *a, const exrio_part *b)
             if (strcmp(a->channels[i].name, b->channels[k].name) == 0) return true;
     return false;
 }
-
-// Deep parts are copied beside the flat ones, whosever view they are.
-static bool takes(const exrio_part *part, const char *view) { return !part->deep && view_has(part, view); }
 
 // A part's name is the layer of its X, Y and Z, which would be lost.
 static bool is_bare_vector(const exrio_part *p)
@@ -78,11 +65,11 @@ static bool is_bare_vector(const exrio_part *p)
 static bool can_merge(const exrio_file *f, const char *view)
 {
     for (int i = 1; i < f->part_count; i++)
-        if (takes(&f->parts[i], view) && is_bare_vector(&f->parts[i])) return false;
+        if (part_is_of_view(&f->parts[i], view) && is_bare_vector(&f->parts[i])) return false;
     for (int i = 0; i < f->part_count; i++)
-        for (int k = 0; k < i && takes(&f->parts[i], view); k++) {
+        for (int k = 0; k < i && part_is_of_view(&f->parts[i], view); k++) {
             const exrio_part *a = &f->parts[i], *b = &f->parts[k];
-            if (!takes(b, view)) continue;
+            if (!part_is_of_view(b, view)) continue;
             if (!box2_equal(a->data_window, b->data_window) || !box2_equal(a->display_window, b->display_window) ||
                 share_a_name(a, b))
                 return false;
@@ -149,7 +136,7 @@ static void add_sources(book *k, exrio_out_part *part, const frame_result *r)
     for (int i = 0; i < r->file->part_count; i++) {
         int index = i;
         const exrio_file *from = exrio_part_file(r->file, &index);
-        if (i != r->resolution.main_part && takes(&r->file->parts[i], r->view))
+        if (i != r->resolution.main_part && part_is_of_view(&r->file->parts[i], r->view))
             k->sources[k->source_count++] = (exrio_source){from, index};
     }
     part->also = first;
@@ -177,7 +164,7 @@ static bool merge_parts(book *k, assembly *a, const job *j, const frame_result *
     if (!room(only, total_channels(f) + MAX_OURS * view_count(r), e)) return false;
     add_sources(k, only, r);
     for (int i = 0; !j->o->keep_none && i < f->part_count; i++)
-        if (takes(&f->parts[i], r->view))
+        if (part_is_of_view(&f->parts[i], r->view))
             only->channel_count += keep_channels(j, r, &f->parts[i], true, only->channels + only->channel_count);
     append_ours(a, only);
     return true;
@@ -197,37 +184,14 @@ static bool keep_part(book *k, const job *j, const frame_result *r, int i, error
     return true;
 }
 
-static void our_part(const frame_result *r, char *name, size_t size)
-{
-    const char *view = view_in_names(r->file, r->view) ? NULL : r->view;
-    snprintf(name, size, "ssdo%s%s", view ? "." : "", view ? view : "");
-}
-
-// A part that an earlier run of ours made.
-static bool is_earlier_run(const frame_result *r, int part)
-{
-    char name[64];
-    our_part(r, name, sizeof name);
-    return strcmp(r->file->parts[part].name, name) == 0 && exrio_attr_exists(r->file, part, "ssdo/version");
-}
-
-bool output_replaces(const job *j, const frame_result *r, int part, const char *channel)
-{
-    for (; r; r = r->next_view) {
-        if (!takes(&r->file->parts[part], r->view)) continue;
-        if (is_replaced(j, r, channel, !r->second_part) || (r->second_part && is_earlier_run(r, part))) return true;
-    }
-    return false;
-}
-
 // The view's parts as they are, and one with our layers: "ssdo", or "ssdo.left".
 static bool add_part(book *k, assembly *a, const job *j, frame_result *r, error *e)
 {
     const exrio_file *f = r->file;
     const char *view = view_in_names(f, r->view) ? NULL : r->view;
-    our_part(r, a->part_name, sizeof a->part_name);
+    part_name(r, a->part_name, sizeof a->part_name);
     for (int i = 0; i < f->part_count; i++) {
-        if (takes(&f->parts[i], r->view) && !is_earlier_run(r, i) && !keep_part(k, j, r, i, e)) return false;
+        if (part_is_of_view(&f->parts[i], r->view) && !part_is_ours(r, i) && !keep_part(k, j, r, i, e)) return false;
     }
     exrio_out_part *mine = k->shared = &k->parts[k->part_count++];
     *mine = part_like(j->o, f, r->resolution.main_part);
@@ -247,7 +211,7 @@ static bool add_part(book *k, assembly *a, const job *j, frame_result *r, error 
 static bool is_filtered(const exrio_part *part, const frame_result *first)
 {
     for (; first; first = first->next_view)
-        if (takes(part, first->view)) return true;
+        if (part_is_of_view(part, first->view)) return true;
     return false;
 }
 

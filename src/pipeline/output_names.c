@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "pipeline/output.h"
 #include "pipeline/views.h"
 
 naming naming_of(const job *j, const frame_result *r) { return (naming){j->o, r->file, r->view}; }
@@ -66,4 +65,37 @@ bool output_keeps_chunks(const options *o, const exrio_file *file, int part, con
             if (name_is_ours(&n, p, in->channels[c].name)) return false;
     }
     return true;
+}
+
+bool name_is_replaced(const job *j, const frame_result *r, const char *channel, bool merged)
+{
+    for (bool in_names = view_in_names(r->file, r->view); r; r = in_names ? r->next_view : NULL) {
+        const naming n = naming_of(j, r);
+        if (name_is_ours(&n, &r->plan, channel) || (merged && j->o->main_composite && name_is_main(&n, channel))) return true;
+    }
+    return false;
+}
+
+bool part_is_of_view(const exrio_part *part, const char *view) { return !part->deep && view_has(part, view); }
+
+void part_name(const frame_result *r, char *name, size_t size)
+{
+    const char *view = view_in_names(r->file, r->view) ? NULL : r->view;
+    snprintf(name, size, "ssdo%s%s", view ? "." : "", view ? view : "");
+}
+
+bool part_is_ours(const frame_result *r, int part)
+{
+    char name[64];
+    part_name(r, name, sizeof name);
+    return strcmp(r->file->parts[part].name, name) == 0 && exrio_attr_exists(r->file, part, "ssdo/version");
+}
+
+bool output_replaces(const job *j, const frame_result *r, int part, const char *channel)
+{
+    for (; r; r = r->next_view) {
+        if (!part_is_of_view(&r->file->parts[part], r->view)) continue;
+        if (name_is_replaced(j, r, channel, !r->second_part) || (r->second_part && part_is_ours(r, part))) return true;
+    }
+    return false;
 }

@@ -10,6 +10,7 @@
 #include "base/sort.h"
 #include "light/primaries.h"
 #include "pipeline/canvas.h"
+#include "pipeline/settings.h"
 #include "plugin/colour.h"
 #include "plugin/images.h"
 

@@ -2,7 +2,7 @@
 #ifndef SSDO_PIPELINE_PREVIEW_H
 #define SSDO_PIPELINE_PREVIEW_H
 
-#include "pipeline/frame.h"
+#include "pipeline/result.h"
 
 // One cell a layer, two columns, a label over each, and a legend below: the occlusion radius, as a number and as a bar of the
 // length it has in the cells at the middle depth, the checkerboard that stands where there is no surface, the stereo view, and

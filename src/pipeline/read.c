@@ -6,7 +6,8 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "pipeline/output.h"
+#include "pipeline/output_names.h"
+#include "pipeline/prepare.h"
 #include "pipeline/relight.h"
 #include "pipeline/views.h"
 #include "plugin/colour.h"
@@ -145,7 +146,7 @@ static bool begin_reading(const job *j, const char *const *inputs, int count, fr
     stopwatch t = stopwatch_start();
     bool ok = exrio_file_open_all(inputs, count, &r->file, e) && list_views(j, r, e);
     for (frame_result *v = r; ok && v; v = v->next_view) ok = resolve_view(j, v, e);
-    frame_lap(r, STAGE_READ, &t);
+    result_lap(r, STAGE_READ, &t);
     return ok && fits_memory(j, r, e);
 }
 
@@ -153,9 +154,9 @@ static bool finish_reading(const job *j, frame_result *r, error *e)
 {
     stopwatch t = stopwatch_start();
     bool ok = exrio_file_load(r->file, j->threads, e);
-    frame_lap(r, STAGE_READ, &t);
+    result_lap(r, STAGE_READ, &t);
     for (frame_result *v = r; ok && v; v = v->next_view) ok = build_view(j, v, e);
-    frame_lap(r, STAGE_RESOLVE, &t);
+    result_lap(r, STAGE_RESOLVE, &t);
     return ok;
 }
 

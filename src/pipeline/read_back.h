@@ -3,7 +3,7 @@
 #define SSDO_PIPELINE_READ_BACK_H
 
 #include "passes/pass.h"
-#include "pipeline/frame.h"
+#include "pipeline/result.h"
 
 // Begins to fetch the planned layers. Where they travel through mapped buffers (gpu/transfer.h) it returns while they are under
 // way, and c may end; elsewhere it does all of read_back_convert's work as well, a few rows at a time.

@@ -9,7 +9,7 @@
 #include "base/mem.h"
 #include "gpu/shaders.h"
 #include "pipeline/decides.h"
-#include "pipeline/frame.h"
+#include "pipeline/job.h"
 
 // Shaders that stand in for those of the program.
 static bool put_shader_folder(digester *d, const char *folder, error *e)

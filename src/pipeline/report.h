@@ -2,7 +2,7 @@
 #ifndef SSDO_PIPELINE_REPORT_H
 #define SSDO_PIPELINE_REPORT_H
 
-#include "pipeline/frame.h"
+#include "pipeline/result.h"
 
 // Points of the disc that a sphere of the occlusion radius covers on the screen, that lie outside the frame, as a share.
 struct json_object *report_rounds(const frame_result *r); // what --error came to

@@ -2,7 +2,7 @@
 #ifndef SSDO_PIPELINE_RESUME_H
 #define SSDO_PIPELINE_RESUME_H
 
-#include "pipeline/frame.h"
+#include "pipeline/result.h"
 
 // Why the frame is left out, in a few words, or NULL. "Already done" is a file that can be read to its last chunk, whose record
 // is the frame's (pipeline/record.h), with the preview and the report that this run would write beside it. A frame that counts as

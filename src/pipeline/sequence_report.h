@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 #include "cli/frames.h"
-#include "pipeline/frame.h"
+#include "pipeline/result.h"
 
 // Who works on a sequence, each on a frame of its own.
 typedef enum sequence_thread { SEQUENCE_READER, SEQUENCE_GPU, SEQUENCE_WRITER, SEQUENCE_THREADS } sequence_thread;

@@ -5,7 +5,7 @@
 
 #include "base/mem.h"
 #include "exr/compare.h"
-#include "pipeline/output.h"
+#include "pipeline/output_names.h"
 #include "pipeline/views.h"
 
 enum { AT_A_TIME = 8 }; // channels in memory, of each file

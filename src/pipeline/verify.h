@@ -2,7 +2,7 @@
 #ifndef SSDO_PIPELINE_VERIFY_H
 #define SSDO_PIPELINE_VERIFY_H
 
-#include "pipeline/frame.h"
+#include "pipeline/result.h"
 
 // True if every channel of the input that passes through is in the file `written` with the same type, window and bits, and every
 // attribute with the same type and value; ERR_OUTPUT names `output` and the first that is not. Both files are opened afresh. At

@@ -3,7 +3,7 @@
 #ifndef SSDO_PIPELINE_VIEWS_H
 #define SSDO_PIPELINE_VIEWS_H
 
-#include "pipeline/frame.h"
+#include "pipeline/result.h"
 
 enum { VIEWS_MAX = EXRIO_VIEWS };
 

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "exr/write.h"
+#include "pipeline/frame.h"
 
 int hard_open(void **state)
 {

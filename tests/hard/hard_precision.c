@@ -10,6 +10,7 @@
 #include "base/half.h"
 #include "hard.h"
 #include "passes/method.h"
+#include "pipeline/frame.h"
 
 enum { WIDTH = 96, HEIGHT = 72, PIXELS = WIDTH * HEIGHT };
 

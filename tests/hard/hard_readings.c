@@ -10,6 +10,7 @@
 
 #include "gbuffer/solve.h"
 #include "hard.h"
+#include "pipeline/frame.h"
 #include "reading_file.h"
 
 // Of the cases that went through a filter, how many times as wide and high the picture is: pixels that outlines cross are a sixth

@@ -9,6 +9,7 @@
 
 #include "hard.h"
 #include "passes/method.h"
+#include "pipeline/frame.h"
 
 static const char all_layers[] = "occlusion,radiance,indirect,composite,visibility,depthmask";
 

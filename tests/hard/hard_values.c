@@ -9,6 +9,7 @@
 
 #include "hard.h"
 #include "passes/method.h"
+#include "pipeline/frame.h"
 
 enum { WIDTH = 72, HEIGHT = 54, PIXELS = WIDTH * HEIGHT };
 

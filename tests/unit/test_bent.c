@@ -13,6 +13,7 @@
 
 #include "must.h"
 #include "near.h"
+#include "pipeline/frame.h"
 #include "rig.h"
 #include "scene_picture.h"
 

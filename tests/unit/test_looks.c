@@ -14,6 +14,7 @@
 #include "base/mem.h"
 #include "base/sort.h"
 #include "must.h"
+#include "pipeline/frame.h"
 #include "rig.h"
 #include "scene_picture.h"
 

@@ -15,6 +15,7 @@
 #include "modules.h"
 #include "must.h"
 #include "near.h"
+#include "pipeline/frame.h"
 #include "rig.h"
 #include "sample.h"
 #include "scene_picture.h"

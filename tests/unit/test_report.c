@@ -14,6 +14,7 @@
 
 #include "exr/write.h"
 #include "must.h"
+#include "pipeline/frame.h"
 #include "pipeline/report.h"
 #include "scene_picture.h"
 

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "must.h"
+#include "pipeline/frame.h"
 #include "rig.h"
 #include "sample.h"
 #include "scene_picture.h"

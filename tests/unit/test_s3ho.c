@@ -14,6 +14,7 @@
 #include "light/sh.h"
 #include "must.h"
 #include "near.h"
+#include "pipeline/frame.h"
 #include "reference.h"
 #include "rig.h"
 #include "scene_picture.h"

@@ -1,6 +1,6 @@
 // What a context and a frame of ssdo.h hold.
-#ifndef SSDO_LIBRARY_CONTEXT_H
-#define SSDO_LIBRARY_CONTEXT_H
+#ifndef SSDO_LIBRARY_OBJECTS_H
+#define SSDO_LIBRARY_OBJECTS_H
 
 #include <pthread.h>
 
