@@ -110,6 +110,13 @@ static void print_mdoc_name(FILE *to, const char *name)
     for (const char *p = name; *p; p++) fprintf(to, *p == '-' ? "\\-" : "%c", *p);
 }
 
+// Of a long list of words, a line may end after each.
+static void print_mdoc_argument(FILE *to, const char *argument)
+{
+    fprintf(to, " Ar ");
+    for (const char *p = argument; *p; p++) fprintf(to, *p == '|' ? "|\\:" : "%c", *p);
+}
+
 static void print_man_row(FILE *to, const option_row *row)
 {
     char buf[OPTION_ARGUMENT];
@@ -117,7 +124,7 @@ static void print_man_row(FILE *to, const option_row *row)
     fprintf(to, ".It ");
     if (row->letter) fprintf(to, "Fl %c , ", row->letter);
     print_mdoc_name(to, row->name);
-    if (*argument) fprintf(to, " Ar %s", argument);
+    if (*argument) print_mdoc_argument(to, argument);
     fprintf(to, "\n");
     print_mdoc(to, 0, row->help);
     if (row->fallback) print_mdoc(to, fprintf(to, "Default:"), row->fallback);

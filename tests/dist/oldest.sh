@@ -34,7 +34,7 @@ make_it imath install
 # Of OpenEXR the core library alone, which is what this program links.
 make_it openexr OpenEXRCore
 for part in src/lib/OpenEXRCore cmake; do cmake -P /build-openexr/$part/cmake_install.cmake; done
-sed -i 's/^Libs:.*/Libs: -L${libdir} -lOpenEXRCore/; s/^Requires:.*/Requires.private: Imath/' $prefix/lib/pkgconfig/OpenEXR.pc
+sed -i 's/^Libs:.*/Libs: -L${libdir} -lOpenEXRCore/; /^Requires.private:/d' $prefix/lib/pkgconfig/OpenEXR.pc
 # This Debian's libdeflate came without one.
 printf 'Name: libdeflate\nDescription: deflate\nVersion: 1.7\nLibs: -ldeflate\n' >$prefix/lib/pkgconfig/libdeflate.pc
 cd /source
