@@ -106,7 +106,7 @@ static bool try_display(gpu *g, EGLDisplay display, const char *platform)
     g->threads = 1;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &g->max_size);
     query_limits(&g->limits);
-    g->habits = gpu_choose_habits(g->software, &g->limits, knob_value("SSDO_READ"), knob_value("SSDO_DRAW"));
+    g->habits = gpu_choose_habits(g->software, g->version, &g->limits, knob_value("SSDO_READ"), knob_value("SSDO_DRAW"));
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     return true;

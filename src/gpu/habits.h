@@ -18,8 +18,9 @@ typedef struct gpu_limits {
     long long storage_bytes; // of one block
 } gpu_limits;
 
-// Image loads only on a software device that allows more images than GL 4.5 promises; drawing only on a software device. `read`
-// ("image", "texture") and `draw` ("0", "1") are what SSDO_READ and SSDO_DRAW say, for tests, or NULL.
-gpu_habits gpu_choose_habits(bool software, const gpu_limits *l, const char *read, const char *draw);
+// Image loads only on a software device that allows more images than GL 4.5 promises and whose `version` (GL_VERSION) is of no
+// Mesa that fails at them; drawing only on a software device. `read` ("image", "texture") and `draw` ("0", "1") are what
+// SSDO_READ and SSDO_DRAW say, for tests, or NULL.
+gpu_habits gpu_choose_habits(bool software, const char *version, const gpu_limits *l, const char *read, const char *draw);
 
 #endif

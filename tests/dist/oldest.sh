@@ -41,13 +41,13 @@ cd /source
 mkdir /licences
 cp /openexr/LICENSE.md /licences/OpenEXR
 [ ! -e /openexr/external/OpenJPH/LICENSE ] || cp /openexr/external/OpenJPH/LICENSE /licences/OpenJPH
-LICENCES=/licences PKG_CONFIG_PATH=$prefix/lib/pkgconfig make dist BUILD=build VERSION="$1" EXTRA_CFLAGS='-include tests/dist/older_glibc.h' \
+XZ_LEVEL=$2 LICENCES=/licences PKG_CONFIG_PATH=$prefix/lib/pkgconfig make dist BUILD=build VERSION="$1" EXTRA_CFLAGS='-include tests/dist/older_glibc.h' \
     PLUGIN='build/ssdo-images.so build/ssdo-trace.so'
 mkdir /unpacked
 tar x -C /unpacked -f build/*.tar.xz
 sh tests/dist/symbols.sh /unpacked 2.31 >/symbols || { cat /symbols; exit 1; }
 B
-root_run "$root" 0:0 "sh /build.sh $version" >"$out/log" 2>&1 || { tail -n 20 "$out/log" >&2; exit 1; }
+root_run "$root" 0:0 "sh /build.sh $version ${XZ_LEVEL:-6}" >"$out/log" 2>&1 || { tail -n 20 "$out/log" >&2; exit 1; }
 cp "$root"/source/build/*.tar.xz "$out"
 cp "$root/symbols" "$out/symbols"
 tail -n 5 "$out/log"

@@ -98,16 +98,26 @@ static void habits_follow_the_device(void **state)
 {
     (void)state;
     const gpu_limits minima = {8, 8, 8, 8, 1 << 27}, many = {192, 32, 16, 72, 1 << 27};
-    gpu_habits h = gpu_choose_habits(true, &many, NULL, NULL);
+    const char *const mesa = "4.5 (Core Profile) Mesa 22.3.6";
+    gpu_habits h = gpu_choose_habits(true, mesa, &many, NULL, NULL);
     assert_true(h.read_images && h.draw);
-    h = gpu_choose_habits(true, &minima, NULL, NULL); // a software device that offers no more
+    h = gpu_choose_habits(true, mesa, &minima, NULL, NULL); // a software device that offers no more
     assert_true(!h.read_images && h.draw);
-    h = gpu_choose_habits(false, &many, NULL, NULL);
+    h = gpu_choose_habits(false, mesa, &many, NULL, NULL);
     assert_true(!h.read_images && !h.draw);
-    h = gpu_choose_habits(false, &minima, "image", "1"); // no word makes a device do what it cannot
+    h = gpu_choose_habits(false, mesa, &minima, "image", "1"); // no word makes a device do what it cannot
     assert_true(!h.read_images && h.draw);
-    h = gpu_choose_habits(true, &many, "texture", "0");
+    h = gpu_choose_habits(true, mesa, &many, "texture", "0");
     assert_true(!h.read_images && !h.draw);
+
+    const char *const good[] = {"4.5 (Core Profile) Mesa 21.3.0", "4.6 (Core Profile) Mesa 25.0.7-2", "4.5 somebody's"};
+    for (int i = 0; i < 3; i++) assert_true(gpu_choose_habits(true, good[i], &many, NULL, NULL).read_images);
+    const char *const bad[] = {"4.5 (Core Profile) Mesa 20.3.5", "4.5 (Core Profile) Mesa 21.2.6"};
+    for (int i = 0; i < 2; i++) {
+        h = gpu_choose_habits(true, bad[i], &many, NULL, NULL);
+        assert_true(!h.read_images && h.draw);
+        assert_true(gpu_choose_habits(true, bad[i], &many, "image", NULL).read_images);
+    }
 }
 
 static bool count_set(void *context, const char *words)
