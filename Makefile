@@ -462,7 +462,7 @@ dist:
 	@sh tests/dist/make.sh $(BUILD) $(VERSION)
 # The same in a fresh Debian 11, for systems as old as that: make dist-oldest OPENEXR=folder IMATH=folder, of sources.
 dist-oldest:
-	@sh tests/deps.sh debootstrap
+	@sh tests/deps.sh debootstrap openimageio-tools
 	@sh tests/dist/oldest.sh $(VERSION) "$(OPENEXR)" "$(IMATH)"
 check-dist:
 	@sh tests/deps.sh debootstrap openimageio-tools
