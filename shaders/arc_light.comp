@@ -2,7 +2,8 @@
 // Direct light by slices around the view vector (README, Slices and sectors). With the weight w of a slice, and sums over slices:
 //   radiance = sum w (open share x environment) / sum w
 //   VISIBILITY: visibility = its luminance over that of the open sky
-//   BOUNCE EXITANT: the same march makes what arc_bounce.comp makes, of a picture that the renderer lit
+//   BOUNCE: the same march makes what arc_bounce.comp makes, of a picture that the renderer lit (EXITANT) or of the first light
+//           (src/passes/first_light.c)
 // Light comes from any distance, so the march has no radius. OUTSIDE: not all directions that leave the frame are open
 // (include/outside.glsl); SURROUND: further G-buffers say which. PLANES, RECEIVERS and LONE: include/arc_slices.glsl.
 #define RUNS

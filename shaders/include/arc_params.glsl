@@ -21,7 +21,8 @@ struct Params {
     int before;
     float openness;
     int views;
+    int side;
 };
 Params params = Params(stored.radius, stored.thickness, stored.kappa, stored.thin, stored.slices, stored.steps, stored.seed,
                        stored.planes, stored.tolerance, stored.level, stored.strength, stored.suns, stored.exitant,
-                       stored.inverse_steps, stored.before, stored.openness, stored.views);
+                       stored.inverse_steps, stored.before, stored.openness, stored.views, stored.side);

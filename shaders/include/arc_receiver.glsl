@@ -1,5 +1,5 @@
 // The pixel whose surroundings a march looks at. What it looks at is always the whole frame.
-// RECEIVERS: the pixels are those of a frame of half the size (src/gbuffer/half.h).
+// RECEIVERS: the pixels are those of a smaller frame (src/gbuffer/half.h).
 // LONE: the pixels are those of a list.
 
 struct Receiver {
@@ -14,9 +14,9 @@ PICTURE(r32f, receiver_depth);
 PICTURE(rgba32f, receiver_normal);
 Receiver receiver_at(ivec2 p) {
     vec4 normal = FETCH(receiver_normal, p);
-    int chosen = int(normal.w);
-    ivec2 q = 2 * p + ivec2(chosen & 1, (chosen >> 1) & 1);
-    return Receiver(chosen < 4 ? 2.0 * vec2(p) + 1.0 : vec2(q) + 0.5, q, FETCH(receiver_depth, p).r, normal.xyz);
+    int chosen = int(normal.w), side = params.side;
+    ivec2 q = side * p + ivec2(chosen % side, chosen / side % side);
+    return Receiver(chosen < side * side ? float(side) * (vec2(p) + 0.5) : vec2(q) + 0.5, q, FETCH(receiver_depth, p).r, normal.xyz);
 }
 #else
 Receiver receiver_at(ivec2 p) { return Receiver(vec2(p) + 0.5, p, depth_at(p), normal_at(p)); }

@@ -15,7 +15,8 @@ PARAMS(arc_params) {
     int before;          // slices of earlier rounds
     float openness;      // share of the unseen directions outside the frame that are open (outside.glsl); 1 all
     int views;           // maps of the surround
-    int unused_1, unused_2, unused_3;
+    int side;            // of the block of pixels that one of a smaller frame stands for (RECEIVERS)
+    int unused_1, unused_2;
     vec4 sun_direction[MAX_SUNS]; // camera space, unit; w half its width, radians
     vec4 sun_light[MAX_SUNS];     // rgb: irradiance over pi of a surface that faces the sun
     vec4 box_low, box_high; // of all surfaces, map axes, the eye at the origin

@@ -151,3 +151,16 @@ bool gbuffer_halve(const gbuffer *g, int threads, gbuffer *out, error *e)
     if (!ok) gbuffer_free(out);
     return ok;
 }
+
+void gbuffer_quarter_places(const gbuffer *half, gbuffer *quarter)
+{
+    for (int y = 0; y < quarter->height; y++)
+        for (int x = 0; x < quarter->width; x++) {
+            float *place = &quarter->normal[4 * at(quarter, x, y) + 3];
+            if (quarter->depth[at(quarter, x, y)] == 0.0f) continue;
+            int outer = (int)*place, dx = outer & 1, dy = (outer >> 1) & 1;
+            int inner = (int)half->normal[4 * at(half, 2 * x + dx, 2 * y + dy) + 3];
+            dx = 2 * dx + (inner & 1), dy = 2 * dy + ((inner >> 1) & 1);
+            *place = (float)(dx + 4 * dy + (outer >= 4 ? 16 : 0));
+        }
+}

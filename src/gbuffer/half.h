@@ -14,6 +14,10 @@
 // the same, in pixels of the new size. Free with gbuffer_free.
 bool gbuffer_halve(const gbuffer *g, int threads, gbuffer *out, error *e);
 
+// After g was halved to `half`, and half to `quarter`: the fourth numbers of the quarter's normals tell places among the 4 x 4
+// pixels of g, x + 4 y, and 16 more where the depth is one pixel's own.
+void gbuffer_quarter_places(const gbuffer *half, gbuffer *quarter);
+
 // The pixels of the whole frame, x | y << 16, row by row.
 typedef struct pixel_list {
     uint32_t *pixels;

@@ -260,19 +260,25 @@ static bool make_senders(pass_context *c, const gpu_image *sender, const gpu_ima
 }
 
 // Light comes from any distance, so this march has no radius. It makes the sky's light, through the open sectors, and the bounce,
-// from the blocked ones. One march makes both, unless the bounce needs the filtered sky light.
+// from the blocked ones. One march makes both, unless the bounce gathers the filtered sky light itself.
 //
 // On a smaller frame the pixels are the receivers; what blocks and sends light is the whole frame.
-static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
+bool arc_run_light(pass_context *c, bool sky, bool bounce, error *e)
 {
     pass_context *seen = c->whole ? c->whole : c;
     // A beauty is the light that surfaces send. Our own radiance is light before albedo.
     bool exitant = !c->set.relight, visibility = sky && c->want_visibility;
-    const gpu_image *sender = &seen->image[exitant ? IMAGE_BEAUTY : IMAGE_RADIANCE],
+    const gpu_image *sender = &seen->image[exitant ? IMAGE_BEAUTY
+                                           : sky   ? IMAGE_FIRST_LIGHT
+                                                   : IMAGE_RADIANCE],
                     *albedo = &seen->image[exitant ? IMAGE_BEAUTY : IMAGE_ALBEDO];
-    if (!arc_make_inputs(seen, e)) return false;
+    if (!arc_make_inputs(seen, e) || (sky && bounce && !exitant && !arc_first_light(c, e))) return false;
     arc_params params = arc_unlimited_params_of(seen);
+    int slices, steps;
+    arc_grid(c->set.samples, &slices, &steps);
+    arc_set_grid(&params, slices, steps);
     params.exitant = exitant;
+    params.side = c->whole_side;
     if (sky && (!pass_split_suns(c, e) || !pass_make_image(c, IMAGE_RADIANCE, e))) return false;
     if (visibility && !pass_make_image(c, IMAGE_VISIBILITY, e)) return false;
     if (bounce && (!light_planes(seen, &params, sender, albedo, e) || !light_outside(seen, &params, sender, albedo, e) ||
@@ -315,7 +321,7 @@ static bool run_light(pass_context *c, bool sky, bool bounce, error *e)
                         e);
 }
 
-static bool light(pass_context *c, error *e) { return run_light(c, true, c->want_indirect, e); }
+static bool light(pass_context *c, error *e) { return arc_run_light(c, true, c->want_indirect, e); }
 
 static bool run(pass_context *c, error *e)
 {
@@ -325,7 +331,7 @@ static bool run(pass_context *c, error *e)
 
 static bool run_bounce(pass_context *c, error *e)
 {
-    return (c->image[IMAGE_INDIRECT].id && !c->at_lone) || run_light(c, false, true, e);
+    return (c->image[IMAGE_INDIRECT].id && !c->at_lone) || arc_run_light(c, false, true, e);
 }
 
 // Of marches for light: what they know beyond the frame, and of which pixels.
@@ -333,7 +339,8 @@ static bool run_bounce(pass_context *c, error *e)
 
 static const variant_row variants[] = {
     {.program = "arc_bounce", .pattern = "[PLANES] [EXITANT] " ARC_FRAME},
-    {.program = "arc_light", .pattern = "[PLANES] [VISIBILITY] " ARC_FRAME " | [PLANES] [VISIBILITY] BOUNCE EXITANT " ARC_FRAME},
+    {.program = "arc_light",
+     .pattern = "[PLANES] [VISIBILITY] " ARC_FRAME " | [PLANES] [VISIBILITY] BOUNCE [EXITANT] " ARC_FRAME},
     {.program = "arc_occlusion", .pattern = ARC_OCCLUSION("RUNS [PLANES]")},
     {.program = "outside_light", .pattern = ""},
     {.program = "plane_light", .pattern = ""},

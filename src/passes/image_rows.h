@@ -63,5 +63,9 @@ IMAGE(SURROUND, .name = "surround", .format = GL_RG32F)
 IMAGE(RIM, .name = "rim of openings", .format = GL_R32F)
 // The same with the light that surfaces send, for a bounce.
 IMAGE(SENDERS, .name = "senders", .format = GL_RGBA32UI)
+// The suns' light alone, and the share of it that arrives (suns.comp).
+IMAGE(SUNS, .name = "light of the suns", .format = GL_RGBA32F)
+// What is known of the radiance before it is made, for a march that makes it and its bounce at once (first_light.c).
+IMAGE(FIRST_LIGHT, .name = "first light", .format = GL_RGBA32F)
 // The light that surfaces outside the frame are taken to send: one texel.
 IMAGE(OUTSIDE_LIGHT, .name = "light of the outside", .format = GL_RGBA32F)

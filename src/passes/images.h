@@ -6,6 +6,7 @@
 #include <epoxy/gl.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "base/error.h"
 
@@ -34,9 +35,9 @@ typedef enum layer_id {
 } layer_id;
 
 // Bits 1 << image_id.
-typedef unsigned image_set;
-_Static_assert(IMAGE_COUNT <= 32, "an image_set has no bit left");
-#define IMAGE_BIT(id) (1u << (id))
+typedef uint64_t image_set;
+_Static_assert(IMAGE_COUNT <= 64, "an image_set has no bit left");
+#define IMAGE_BIT(id) ((uint64_t)1 << (id))
 
 enum {
     LAYER_CHANNELS = 7, // of a layer, at most

@@ -109,6 +109,12 @@ pass_context pass_like(const pass_context *c, const gbuffer *gb, const pass_sett
     return like;
 }
 
+void pass_take_timings(pass_context *c, const pass_context *from)
+{
+    for (int i = 0; i < from->timing_count && c->timing_count < PASS_MAX_TIMINGS; i++)
+        c->timings[c->timing_count++] = from->timings[i];
+}
+
 void pass_end(pass_context *c)
 {
     for (int i = 0; i < IMAGE_COUNT; i++) gpu_image_free(&c->image[i]);

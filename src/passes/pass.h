@@ -108,7 +108,8 @@ typedef struct pass_context {
     bool want_error;    // the standard error, after rounds
     bool want_indirect; // the method's own loop makes the bounce too, if it can
     bool want_radiance, want_visibility;
-    struct pass_context *whole; // borrowed; of SIZE_LIGHT's smaller frame: the frame that its marches see
+    struct pass_context *whole; // borrowed; of a smaller frame: the frame that its marches see, and
+    int whole_side;             // how many of that frame's pixels a side one of this frame stands for
     const pixel_list *lone;     // borrowed, may be NULL: of SIZE_LIGHT's whole frame, the pixels the smaller does not show
     bool at_lone;               // light is made of those alone
     const gbuffer *gb;          // borrowed
@@ -142,6 +143,9 @@ void pass_end(pass_context *c);
 
 // A context with all that the caller of pass_begin gave to `c`, for another G-buffer and other settings; not begun.
 pass_context pass_like(const pass_context *c, const gbuffer *gb, const pass_settings *set);
+
+// The times of `from` belong to `c`.
+void pass_take_timings(pass_context *c, const pass_context *from);
 
 // What the G-buffer holds of an image that it gives; NULL: nothing.
 const float *pass_pixels(const gbuffer *gb, image_id id);
@@ -207,6 +211,8 @@ bool pass_add_group(const pass_context *c, unsigned group, variant *words, pass_
 
 bool pass_split_suns(pass_context *c, error *e); // takes the suns out of the environment, once a batch
 bool pass_suns(pass_context *c, error *e);       // radiance, visibility: in place, if their suns are apart
+// Adds the light of the suns to `light` and, if it is there, `visibility`. Their shadows are found once a frame.
+bool pass_add_suns(pass_context *c, gpu_image *light, gpu_image *visibility, error *e);
 // pass_denoise filters the occlusion: `half_difference` tells it the noise. pass_blur filters other pictures, whose noise is
 // unknown.
 typedef struct pass_denoising {

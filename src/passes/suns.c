@@ -52,7 +52,6 @@ static void put_suns(const pass_context *c, arc_params *p)
 {
     const sun_set *set = &c->sunless->suns;
     mat3 map_from_camera = m3_mul(c->env->map_from_world, c->set.world_from_camera);
-    put_box(c, map_from_camera, p);
     p->suns = set->count;
     for (int i = 0; i < set->count; i++) {
         const sun *s = &set->suns[i];
@@ -82,16 +81,21 @@ bool pass_split_suns(pass_context *c, error *e)
     return true;
 }
 
-bool pass_suns(pass_context *c, error *e)
+static arc_params params_of(const pass_context *c)
 {
-    if (!c->suns_apart) return true;
+    arc_params p = arc_unlimited_params_of(c);
+    p.kappa *= SUN_KAPPA;
+    p.steps = c->set.samples < 16 ? 16 : c->set.samples > 128 ? 128 : c->set.samples;
+    p.inverse_steps = 1.0f / (float)p.steps;
+    put_suns(c, &p);
+    return p;
+}
+
+static bool find_shadows(pass_context *c, arc_params params, error *e)
+{
+    if (c->image[IMAGE_SUNS].id) return true;
     if (!arc_make_inputs(c, e)) return false;
-    arc_params params = arc_unlimited_params_of(c);
-    params.kappa *= SUN_KAPPA;
-    params.steps = c->set.samples < 16 ? 16 : c->set.samples > 128 ? 128 : c->set.samples;
-    params.inverse_steps = 1.0f / (float)params.steps;
-    put_suns(c, &params);
-    gpu_image light = {0};
+    put_box(c, m3_mul(c->env->map_from_world, c->set.world_from_camera), &params);
     variant v = {{0}};
     variant_add(&v, arc_closes_outside(c), "OUTSIDE");
     variant_add(&v, arc_has_surround(c), "SURROUND");
@@ -102,17 +106,29 @@ bool pass_suns(pass_context *c, error *e)
         .reads = {{"surface_image", &c->image[IMAGE_SURFACE]},
                   {"rim_image", &c->image[IMAGE_RIM]},
                   {"surround_image", &c->image[IMAGE_SURROUND]}},
-        .writes = {{"sun_image", &light}},
+        .writes = {{"sun_image", &c->image[IMAGE_SUNS]}},
     };
+    return pass_make_image(c, IMAGE_SUNS, e) && pass_run(c, &march, e);
+}
+
+bool pass_add_suns(pass_context *c, gpu_image *light, gpu_image *visibility, error *e)
+{
+    const arc_params params = params_of(c);
     const pass_call add = {
         .program = "suns_add",
-        .variant = c->image[IMAGE_VISIBILITY].id ? "VISIBILITY" : NULL,
+        .variant = visibility && visibility->id ? "VISIBILITY" : NULL,
         PASS_PARAMS(params),
-        .reads = {{"sun_image", &light}},
-        .writes = {{"scalar_image", &c->image[IMAGE_VISIBILITY]}, {"light_image", &c->image[IMAGE_RADIANCE]}},
+        .reads = {{"sun_image", &c->image[IMAGE_SUNS]}},
+        .writes = {{"scalar_image", visibility}, {"light_image", light}},
     };
-    bool ok = pass_make(c, &light, GL_RGBA32F, 0.0f, e) && pass_run(c, &march, e) && pass_run(c, &add, e);
-    gpu_image_free(&light);
+    return find_shadows(c, params, e) && pass_run(c, &add, e);
+}
+
+bool pass_suns(pass_context *c, error *e)
+{
+    if (!c->suns_apart) return true;
+    bool ok = pass_add_suns(c, &c->image[IMAGE_RADIANCE], &c->image[IMAGE_VISIBILITY], e);
+    gpu_image_free(&c->image[IMAGE_SUNS]);
     c->suns_apart = !ok;
     return ok;
 }

@@ -9,8 +9,7 @@
 // The times of the small frame's passes belong to the frame.
 static void take_times(pass_context *c, const pass_context *small)
 {
-    for (int i = 0; i < small->timing_count && c->timing_count < PASS_MAX_TIMINGS; i++)
-        c->timings[c->timing_count++] = small->timings[i];
+    pass_take_timings(c, small);
     if (!c->planes.found) c->planes = small->planes;
 }
 
@@ -39,7 +38,7 @@ static bool open_small(runner *r, error *e)
     pass_settings set = r->whole->set;
     set.blur = set.size == SIZE_LIGHT ? (3 * set.blur + 3) / 4 : (set.blur + 1) / 2; // as wide on the surface as at full size
     r->small = pass_like(r->whole, r->half, &set);
-    if (set.size == SIZE_LIGHT) r->small.whole = r->whole;
+    if (set.size == SIZE_LIGHT) r->small.whole = r->whole, r->small.whole_side = 2;
     r->open = pass_begin(&r->small, e);
     return r->open;
 }

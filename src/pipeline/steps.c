@@ -66,11 +66,15 @@ bool steps_split_suns(const plan *p)
 
 static bool has_own_bounce(const plan *p) { return p->bounce && p->estimator == p->method->bounce; }
 
-bool steps_bounce_within(const plan *p, const pass_settings *set)
+bool steps_bounce_within(const step_facts *f)
 {
+    const plan *p = f->plan;
     if (!has_own_bounce(p)) return false;
     if (p->estimator->march == BOUNCE_WITH_METHOD) return true;
-    return p->estimator->march == BOUNCE_WITH_PICTURE && !set->relight && (p->want_radiance || p->want_visibility);
+    if (p->estimator->march != BOUNCE_WITH_PICTURE || !(p->want_radiance || p->want_visibility)) return false;
+    // Of a picture that is lit here a first estimate of the light is enough, unless all is to be exact or spheres change the
+    // light.
+    return !f->set->relight || (f->set->size != SIZE_FULL && !f->proxies);
 }
 
 bool steps_use_small(const plan *p, const pass_settings *set)
@@ -103,7 +107,7 @@ static image_set made_by(const step_facts *f)
     if (p->want_radiance || steps_split_suns(p)) made |= BIT(RADIANCE); // that march makes it beside visibility
     if (p->want_visibility && method_makes(p->method, MAKES_LIGHT)) made |= BIT(VISIBILITY);
     if (method_makes(p->method, MAKES_SH)) made |= vector_of(f->set);
-    if (steps_bounce_within(p, f->set)) made |= BIT(INDIRECT);
+    if (steps_bounce_within(f)) made |= BIT(INDIRECT);
     if (method_makes(p->method, MAKES_ERROR) && (f->set->error > 0.0 || arc_has_half_difference(f->set)))
         made |= BIT(HALF_DIFFERENCE);
     return made;
@@ -112,11 +116,11 @@ static image_set made_by(const step_facts *f)
 // What surfaces send: the picture that the renderer lit, or our own radiance by their albedo.
 static image_set senders(const pass_settings *set) { return set->relight ? BIT(RADIANCE) | BIT(ALBEDO) : BIT(BEAUTY); }
 
-// Beside depth and normal, for a march that makes `made`.
+// Beside depth and normal, for a march that makes `made`. Light that it makes itself it does not read.
 static image_set read_for(const step_facts *f, image_set made)
 {
     bool gathers = made & BIT(INDIRECT) && f->plan->estimator->march == BOUNCE_WITH_PICTURE;
-    return BIT(DEPTH) | BIT(NORMAL) | (gathers ? senders(f->set) : 0);
+    return BIT(DEPTH) | BIT(NORMAL) | (gathers ? senders(f->set) & ~(made & LIGHT) : 0);
 }
 
 static void add_method(builder *b, step_size size, image_set made)
@@ -237,7 +241,7 @@ static void add_bounce(builder *b, step_size size)
     const step_facts *f = b->f;
     const plan *p = f->plan;
     if (!p->bounce) return;
-    if (!steps_bounce_within(p, f->set))
+    if (!steps_bounce_within(f))
         add(b, (plan_step){.pass = "bounce",
                            .why = "indirect light",
                            .size = size,
@@ -268,7 +272,7 @@ static void add_light_at_half(builder *b)
     add_method_light(b, made & light);
     add_filters(b, STEP_SMALL);
     if (made & BIT(INDIRECT)) add_bounce(b, STEP_AMID);
-    add_upsampling(b, ~0u);
+    add_upsampling(b, ~(image_set)0);
     add_refining(b, made & light);
     add_light(b);
     if (made & BIT(INDIRECT)) return;
@@ -283,11 +287,12 @@ static void add_all_at_half(builder *b)
 {
     const step_facts *f = b->f;
     const plan *p = f->plan;
-    bool lit_later = p->bounce && f->set->relight && (p->tone || p->irradiance || f->proxies || f->suns);
+    bool lit_later =
+        p->bounce && f->set->relight && !steps_bounce_within(f) && (p->tone || p->irradiance || f->proxies || f->suns);
     add_method(b, STEP_SMALL, made_by(f));
     add_filters(b, STEP_SMALL);
     if (!lit_later) add_bounce(b, STEP_SMALL);
-    add_upsampling(b, ~0u);
+    add_upsampling(b, ~(image_set)0);
     add_light(b);
     if (!lit_later) return;
     add(b, (plan_step){.pass = "downsample",

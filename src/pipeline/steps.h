@@ -54,6 +54,6 @@ bool steps_use_small(const plan *p, const pass_settings *set);
 // Whether the method's light leaves the environment's suns to pass_suns.
 bool steps_split_suns(const plan *p);
 // Whether the method's own march makes the bounce too.
-bool steps_bounce_within(const plan *p, const pass_settings *set);
+bool steps_bounce_within(const step_facts *f);
 
 #endif

@@ -34,6 +34,31 @@ static gbuffer clutter(int width, int height)
     return shoot(&s, &v);
 }
 
+// A pixel of the frame that was halved twice has the normal of the pixel whose place it tells.
+static void quarters_know_their_pixels(void **state)
+{
+    (void)state;
+    gbuffer gb = clutter(93, 61), half, quarter;
+    error e = {0};
+    int seen = 0;
+    must(gbuffer_halve(&gb, 2, &half, &e) && gbuffer_halve(&half, 2, &quarter, &e), &e);
+    gbuffer_quarter_places(&half, &quarter);
+    for (int y = 0; y < quarter.height; y++)
+        for (int x = 0; x < quarter.width; x++) {
+            size_t i = (size_t)(y * quarter.width + x);
+            if (quarter.depth[i] == 0.0f) continue;
+            int place = (int)quarter.normal[4 * i + 3] % 16, u = 4 * x + place % 4, v = 4 * y + place / 4;
+            assert_in_range(u, 0, gb.width - 1);
+            assert_in_range(v, 0, gb.height - 1);
+            assert_memory_equal(quarter.normal + 4 * i, gb.normal + 4 * (v * gb.width + u), 3 * sizeof(float));
+            seen++;
+        }
+    assert_true(seen > 100);
+    gbuffer_free(&gb);
+    gbuffer_free(&half);
+    gbuffer_free(&quarter);
+}
+
 static double clutter_radius(void)
 {
     scene s = {0};
@@ -308,10 +333,11 @@ static void same_bits_for_any_threads(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_surface_is_invented),          cmocka_unit_test(the_median_represents),
-        cmocka_unit_test(empty_plane_stays_open),          cmocka_unit_test(is_near_the_full_result),
-        cmocka_unit_test(nothing_bleeds_over_edges),       cmocka_unit_test(same_bits_for_any_threads),
-        cmocka_unit_test(lone_pixels_are_those_not_shown), cmocka_unit_test(light_alone_is_halved),
+        cmocka_unit_test(no_surface_is_invented),     cmocka_unit_test(the_median_represents),
+        cmocka_unit_test(empty_plane_stays_open),     cmocka_unit_test(is_near_the_full_result),
+        cmocka_unit_test(nothing_bleeds_over_edges),  cmocka_unit_test(same_bits_for_any_threads),
+        cmocka_unit_test(quarters_know_their_pixels), cmocka_unit_test(lone_pixels_are_those_not_shown),
+        cmocka_unit_test(light_alone_is_halved),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests_name("half", tests, NULL, NULL);

@@ -127,7 +127,9 @@ static void pictures_flow(const plan *p, const step_list *l, const pass_settings
         assert_false(ended); // first what runs, then what does not
         image_set *from = s->size == STEP_SMALL || s->size == STEP_UP ? &small : &whole;
         image_set *to = s->size == STEP_WHOLE || s->size == STEP_UP ? &whole : &small;
-        if (s->reads & ~*from) fail_msg("%s by %s reads %x, and there is %x", s->pass, p->method->name, s->reads, *from);
+        if (s->reads & ~*from)
+            fail_msg("%s by %s reads %llx, and there is %llx", s->pass, p->method->name, (unsigned long long)s->reads,
+                     (unsigned long long)*from);
         bool moves = s->size == STEP_UP || s->size == STEP_DOWN;
         if (moves) assert_int_equal(s->reads, s->writes);
         assert_true(s->writes && (moves || s->run));
@@ -151,12 +153,13 @@ static void steps_follow(const plan *p, const options *o)
             set.size = o->error <= 0.0 && !p->from_sh ? (estimate_size)size : SIZE_FULL;
             if (more & 4) set.samples *= 16;
             image_set given = given_by(p);
-            steps_make(&(step_facts){p, &set, given, proxies, suns, lone}, &l);
+            const step_facts facts = {p, &set, given, proxies, suns, lone};
+            steps_make(&facts, &l);
             pictures_flow(p, &l, &set, given);
             assert_true(step_named(&l, p->method->name)->runs);
             assert_int_equal(step_named(&l, "irradiance")->runs, p->irradiance);
             assert_int_equal(step_named(&l, "tone")->runs, p->tone);
-            assert_int_equal(step_named(&l, "bounce")->runs, p->bounce && !steps_bounce_within(p, &set));
+            assert_int_equal(step_named(&l, "bounce")->runs, p->bounce && !steps_bounce_within(&facts));
             assert_int_equal(step_named(&l, "specular")->runs, p->specular);
             assert_int_equal(step_named(&l, "depthmask")->runs, p->depthmask);
             assert_int_equal(step_named(&l, "composite")->runs, p->composite);

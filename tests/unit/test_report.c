@@ -275,8 +275,8 @@ static void marches_are_those_needed(void **state)
         {"occlusion", "samples/sky_soft.exr", {true}},
         {"radiance", "samples/sky_soft.exr", {true, true}},
         {"indirect", NULL, {true, false, true}},
-        {"indirect", "samples/sky_soft.exr", {true, true, true}},
-        {NULL, "samples/sky_soft.exr", {true, true, true}},
+        {"indirect", "samples/sky_soft.exr", {true, true, false, true}}, // the first light, then both at once
+        {NULL, "samples/sky_soft.exr", {true, true, false, true}},
         {NULL, NULL, {true, false, false, true}}, // the beauty bounces
     };
     (void)state;
