@@ -19,7 +19,7 @@ void main() {
     int i = int(gl_LocalInvocationIndex);
     if (i >= params.planes) return;
     vec4 equation = imageLoad(planes_image, ivec2(PLANE_EQUATION, i));
-    float room = imageLoad(planes_image, ivec2(PLANE_LIGHT, i)).w;
+    float margin = imageLoad(planes_image, ivec2(PLANE_LIGHT, i)).w;
     vec3 sum = vec3(0.0);
     float count = 0.0;
     for (int k = 0; k < GRID * GRID; k++) {
@@ -27,10 +27,10 @@ void main() {
         float depth = depth_at(q);
         if (depth == 0.0) continue;
         float off = abs(dot(equation.xyz, position_of(q, depth)) - equation.w);
-        float least = room < 0.0 ? 0.8 : 0.99;
-        if (off > abs(room) * (is_orthographic() ? 1.0 : depth) || dot(equation.xyz, normal_at(q)) < least) continue;
+        float least = margin < 0.0 ? 0.8 : 0.99;
+        if (off > abs(margin) * (is_orthographic() ? 1.0 : depth) || dot(equation.xyz, normal_at(q)) < least) continue;
         sum += sent_by(q);
         count += 1.0;
     }
-    imageStore(planes_image, ivec2(PLANE_LIGHT, i), vec4(count > 0.0 ? sum / count : vec3(0.0), room));
+    imageStore(planes_image, ivec2(PLANE_LIGHT, i), vec4(count > 0.0 ? sum / count : vec3(0.0), margin));
 }

@@ -22,7 +22,7 @@ layout(rgba32f) writeonly uniform image2D sun_image; // rgb: light; a: its share
 // Where a ray leaves the box of all surfaces, beyond which nothing can block it; in pixels along its line.
 float way_out(vec3 P, vec3 S, Line line) {
     vec3 from = to_map(P), along = to_map(S);
-    vec3 wall = mix(stored.box_low.xyz, stored.box_high.xyz, greaterThan(along, vec3(0.0)));
+    vec3 wall = mix(arc_block.box_low.xyz, arc_block.box_high.xyz, greaterThan(along, vec3(0.0)));
     vec3 times = (wall - from) / mix(along, vec3(1e-20), lessThan(abs(along), vec3(1e-20)));
     vec3 X = P + max(0.0, min(times.x, min(times.y, times.z))) * S;
     return in_front(X) ? min(distance(screen_of(X), line.origin), line.border) : line.border;
@@ -38,9 +38,9 @@ void main() {
     float eye_distance = length(P), noise = pixel_noise(p, params.seed).x;
     vec3 light = vec3(0.0), all = vec3(0.0);
     for (int i = 0; i < params.suns; i++) {
-        vec3 S = stored.sun_direction[i].xyz, L = sunlight(i, N);
+        vec3 S = arc_block.sun_direction[i].xyz, L = sunlight(i, N);
         if (dot(N, S) <= 0.0) continue;
-        float half_width = stored.sun_direction[i].w, along = dot(S, V);
+        float half_width = arc_block.sun_direction[i].w, along = dot(S, V);
         vec3 aside = S - along * V;
         float sine = length(aside), t = atan(sine, along);
         vec3 across = sine > 1e-4 ? aside / sine : tangent_frame(V)[0];

@@ -18,8 +18,8 @@ void main() {
     vec3 P = position_of(p, depth);
     for (int i = 0; i < params.planes; i++) {
         vec4 equation = FETCH(planes_image, ivec2(PLANE_EQUATION, i));
-        float room = FETCH(planes_image, ivec2(PLANE_LIGHT, i)).w * (is_orthographic() ? 1.0 : depth);
-        if (abs(dot(equation.xyz, P) - equation.w) <= room && dot(equation.xyz, N) >= 0.99) normal |= 1u << 31u;
+        float margin = FETCH(planes_image, ivec2(PLANE_LIGHT, i)).w * (is_orthographic() ? 1.0 : depth);
+        if (abs(dot(equation.xyz, P) - equation.w) <= margin && dot(equation.xyz, N) >= 0.99) normal |= 1u << 31u;
     }
 #endif
     imageStore(surface_image, p, uvec4(floatBitsToUint(depth), normal, 0u, 0u));

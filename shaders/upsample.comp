@@ -1,5 +1,5 @@
 #version 450 core
-// Brings the layers of a frame of half the size (src/gbuffer/half.h) to full size. A pixel is the bilinear mean of the four nearest small
+// Brings the layers of a frame of half the size (src/gbuffer/half_size.h) to full size. A pixel is the bilinear mean of the four nearest small
 // pixels. A small pixel weighs less the further it lies off the pixel's tangent plane (in small footprints) and the more its normal
 // differs (as in blur.comp). If none of the four is on the pixel's surface, the pixel copies the best of sixteen. If no surface is near
 // (a speck seen edge-on), the pixel is open; with OPEN_LIGHT its colour 0 is the SH irradiance / pi.

@@ -14,11 +14,11 @@ const float UNSEEN = 0.4;
 vec3 unseen = vec3(0.0); // that light; before albedo if not EXITANT
 
 // Light that a surface sends to the receiver; `seen`: the receiver sees the side that the camera sees.
-vec3 sent_by(uvec2 stored, bool seen) {
+vec3 sent_by(uvec2 sender, bool seen) {
 #ifdef EXITANT
-    return seen ? sender_light(stored) : unseen;
+    return seen ? sender_light(sender) : unseen;
 #else
-    return seen ? sender_light(stored) : unseen * sender_albedo(stored);
+    return seen ? sender_light(sender) : unseen * sender_albedo(sender);
 #endif
 }
 #else

@@ -1,4 +1,4 @@
-#define params stored
+#define params arc_block
 #include "params/arc.glsl"
 #undef params
 
@@ -23,6 +23,6 @@ struct Params {
     int views;
     int side;
 };
-Params params = Params(stored.radius, stored.thickness, stored.kappa, stored.thin, stored.slices, stored.steps, stored.seed,
-                       stored.planes, stored.tolerance, stored.level, stored.strength, stored.suns, stored.exitant,
-                       stored.inverse_steps, stored.before, stored.openness, stored.views, stored.side);
+Params params = Params(arc_block.radius, arc_block.thickness, arc_block.kappa, arc_block.thin, arc_block.slices, arc_block.steps, arc_block.seed,
+                       arc_block.planes, arc_block.tolerance, arc_block.level, arc_block.strength, arc_block.suns, arc_block.exitant,
+                       arc_block.inverse_steps, arc_block.before, arc_block.openness, arc_block.views, arc_block.side);

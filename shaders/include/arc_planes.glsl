@@ -7,12 +7,12 @@ PICTURE(rgba32f, planes_image);
 
 const int CHORDS = 6; // directions tested of the arc that a plane could block
 const float BELIEVED_PLANE = 1.5; // beyond the frame a plane is believed up to here, in half widths of its support
-const float UNEVEN_LEAST = 0.04; // uneven ground nearer than this share of its room is the receiver's own surface
+const float UNEVEN_LEAST = 0.04; // uneven ground nearer than this share of its margin is the receiver's own surface
 
-// True if the recorded surface at a pixel lies in front of depth z, or (with a negative room) at it. A room is a share of the depth,
+// True if the recorded surface at a pixel lies in front of depth z, or (with a negative margin) at it. A margin is a share of the depth,
 // with an orthographic camera a length: twice as far as a plane's own surface may lie off it.
-bool hidden(float recorded, float z, float room) {
-    return recorded != 0.0 && z > (is_orthographic() ? recorded + room : recorded * (1.0 + room));
+bool hidden(float recorded, float z, float margin) {
+    return recorded != 0.0 && z > (is_orthographic() ? recorded + margin : recorded * (1.0 + margin));
 }
 
 // The pixel where a line leaves the frame.
@@ -24,14 +24,14 @@ Border border_of(Line line) {
 }
 
 // Whether a plane may go on beyond the frame there.
-bool allows(Border b, vec4 equation, float room) {
+bool allows(Border b, vec4 equation, float margin) {
     float across = dot(equation.xy, b.ray);
     float z = is_orthographic() ? (equation.w - across) / equation.z : equation.w / (across + equation.z);
-    return hidden(b.recorded, z > 0.0 ? z : 1e30, -room);
+    return hidden(b.recorded, z > 0.0 ? z : 1e30, -margin);
 }
 
 // Whether the plane's point X counts; `here`: its place on the support, -1 .. 1.
-bool stands(int plane, vec3 X, vec2 here, bool beyond_frame, float room) {
+bool stands(int plane, vec3 X, vec2 here, bool beyond_frame, float margin) {
     vec2 screen = screen_of(X);
     // Compared before the conversion to integers: screen coordinates of a point near the eye do not fit into one.
     bool inside = X.z > 0.0 && all(greaterThanEqual(screen, vec2(0.0))) && all(lessThan(screen, vec2(frame_size)));
@@ -39,7 +39,7 @@ bool stands(int plane, vec3 X, vec2 here, bool beyond_frame, float room) {
     vec4 rows = FETCH(planes_image, ivec2(PLANE_MASK + (cell.y >> 2), plane));
     uint row = uint((cell.y & 2) == 0 ? ((cell.y & 1) == 0 ? rows.x : rows.y) : ((cell.y & 1) == 0 ? rows.z : rows.w));
     bool supported = max(abs(here.x), abs(here.y)) <= 1.0 && ((row >> cell.x) & 1u) == 1u;
-    bool behind = hidden(FETCH(depth_image, q).r, X.z, room);
+    bool behind = hidden(FETCH(depth_image, q).r, X.z, margin);
     return inside ? supported && behind : beyond_frame && max(abs(here.x), abs(here.y)) <= BELIEVED_PLANE;
 }
 
@@ -48,9 +48,9 @@ void block_by_planes(inout Sectors sectors, Side s, vec3 V, vec3 across, float n
     for (int i = 0; i < params.planes; i++) {
         vec4 equation = FETCH(planes_image, ivec2(PLANE_EQUATION, i));
         vec4 u = FETCH(planes_image, ivec2(PLANE_U, i)), v = FETCH(planes_image, ivec2(PLANE_V, i));
-        float off = FETCH(planes_image, ivec2(PLANE_LIGHT, i)).w, room = 2.0 * abs(off);
+        float off = FETCH(planes_image, ivec2(PLANE_LIGHT, i)).w, margin = 2.0 * abs(off);
         bool uneven = off < 0.0;
-        float least = room * (uneven ? UNEVEN_LEAST : 1.0) * (is_orthographic() ? 1.0 : P.z);
+        float least = margin * (uneven ? UNEVEN_LEAST : 1.0) * (is_orthographic() ? 1.0 : P.z);
         // Distance to the plane along direction t: height / (normal . (cos t, sin t)), least at t0.
         float h = equation.w - dot(equation.xyz, P), height = abs(h);
         vec2 normal = vec2(dot(equation.xyz, V), dot(equation.xyz, across)) * (h < 0.0 ? -1.0 : 1.0);
@@ -66,7 +66,7 @@ void block_by_planes(inout Sectors sectors, Side s, vec3 V, vec3 across, float n
         float width = (to - from) / float(CHORDS);
         // A rasteriser on the CPU saves turns of a loop, not branches.
         int chords = width > 0.0 && height > least && !(uneven && h > 0.0) ? CHORDS : 0;
-        bool goes_right = allows(right, equation, room), goes_left = allows(left, equation, room);
+        bool goes_right = allows(right, equation, margin), goes_left = allows(left, equation, margin);
 #ifdef BOUNCE
         vec3 sent = h < 0.0 ? FETCH(planes_image, ivec2(PLANE_LIGHT, i)).rgb : vec3(0.0); // from the side that the camera sees
 #else
@@ -80,7 +80,7 @@ void block_by_planes(inout Sectors sectors, Side s, vec3 V, vec3 across, float n
             float next = share_at(s, from + float(j + 1) * width, edge);
             vec3 X = P + height / dot(normal, d) * (d.x * V + d.y * across);
             vec2 here = vec2(dot(u.xyz, X) - u.w, dot(v.xyz, X) - v.w);
-            bool blocks = stands(i, X, here, d.y > 0.0 ? goes_right : goes_left, room);
+            bool blocks = stands(i, X, here, d.y > 0.0 ? goes_right : goes_left, margin);
             block(sectors, blocks ? sectors_between(c, next, jitter) : uvec2(0u), sent);
             c = next;
         }

@@ -1,5 +1,5 @@
 // The pixel whose surroundings a march looks at. What it looks at is always the whole frame.
-// RECEIVERS: the pixels are those of a smaller frame (src/gbuffer/half.h).
+// RECEIVERS: the pixels are those of a smaller frame (src/gbuffer/half_size.h).
 // LONE: the pixels are those of a list.
 
 struct Receiver {

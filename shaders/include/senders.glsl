@@ -12,7 +12,7 @@ uvec2 pack_sender(vec3 L, vec3 albedo) {
     uvec3 l = pack_light(L), a = uvec3(clamp(albedo, vec3(0.0), vec3(1.0)) * 31.0 + 0.5);
     return uvec2(l.r | l.g << 16u, l.b | (a.r | a.g << 5u | a.b << 10u) << 16u);
 }
-vec3 sender_light(uvec2 stored) {
-    return uintBitsToFloat(uvec3(stored.x & 0xffffu, stored.x >> 16u, stored.y & 0xffffu) << 14u) * SENT_SCALE;
+vec3 sender_light(uvec2 sender) {
+    return uintBitsToFloat(uvec3(sender.x & 0xffffu, sender.x >> 16u, sender.y & 0xffffu) << 14u) * SENT_SCALE;
 }
-vec3 sender_albedo(uvec2 stored) { return vec3(uvec3(stored.y >> 16u, stored.y >> 21u, stored.y >> 26u) & 31u) * (1.0 / 31.0); }
+vec3 sender_albedo(uvec2 sender) { return vec3(uvec3(sender.y >> 16u, sender.y >> 21u, sender.y >> 26u) & 31u) * (1.0 / 31.0); }

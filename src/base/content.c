@@ -7,12 +7,12 @@
 #include "base/infile.h"
 #include "base/mem.h"
 
-enum { ROOM = 1 << 20, HEAD = 1 << 16 };
+enum { BUFFER = 1 << 20, HEAD = 1 << 16 };
 
 typedef struct source {
     const char *path;
     int fd;
-    uint8_t *room; // ROOM bytes
+    uint8_t *buffer; // BUFFER bytes
     digester *d;
     error *e;
 } source;
@@ -20,11 +20,11 @@ typedef struct source {
 static bool put_range(const source *s, uint64_t from, uint64_t to)
 {
     while (from < to) {
-        size_t want = to - from < ROOM ? (size_t)(to - from) : ROOM;
-        if (infile_read_at(s->fd, s->room, want, from) != want)
+        size_t want = to - from < BUFFER ? (size_t)(to - from) : BUFFER;
+        if (infile_read_at(s->fd, s->buffer, want, from) != want)
             return errno ? err_set_system(s->e, ERR_INPUT, errno, s->path, "cannot be read")
                          : err_set(s->e, ERR_INPUT, s->path, NULL, "cannot be read: it became shorter meanwhile");
-        digest_put(s->d, s->room, want);
+        digest_put(s->d, s->buffer, want);
         from += want;
     }
     return true;
@@ -63,11 +63,11 @@ bool content_read(const char *path, content_head head_of, bool exact, content *o
     *out = (content){0};
     source s = {.path = path, .fd = infile_open(path, (infile_kind){NULL, ERR_INPUT}, &size, &why), .e = e};
     if (s.fd < 0) return !why.refused || err_set_system(e, why.code, why.refused, path, "cannot be opened");
-    s.room = mem_pixels(ROOM, 1, e);
-    bool ok = s.room && (!head_of || head_of(path, s.fd, size, &head, e)) && read_one(&s, head, size, false, &out->sampled) &&
+    s.buffer = mem_pixels(BUFFER, 1, e);
+    bool ok = s.buffer && (!head_of || head_of(path, s.fd, size, &head, e)) && read_one(&s, head, size, false, &out->sampled) &&
               (!exact || read_one(&s, head, size, true, &out->exact));
     if (!ok) *out = (content){0};
-    free(s.room);
+    free(s.buffer);
     close(s.fd);
     return ok;
 }

@@ -12,20 +12,20 @@
 
 typedef struct record {
     char *buf; // grows
-    size_t used, room;
+    size_t used, capacity;
     error *e;
     bool failed;
 } record;
 
 static void put(record *r, const char *text, size_t n)
 {
-    if (r->used + n + 1 > r->room) {
-        size_t room = 2 * (r->used + n + 1);
-        char *grown = r->failed ? NULL : mem_grow(r->buf, room, 1, r->e);
+    if (r->used + n + 1 > r->capacity) {
+        size_t capacity = 2 * (r->used + n + 1);
+        char *grown = r->failed ? NULL : mem_grow(r->buf, capacity, 1, r->e);
         r->failed = !grown;
         if (r->failed) return;
         r->buf = grown;
-        r->room = room;
+        r->capacity = capacity;
     }
     memcpy(r->buf + r->used, text, n);
     r->used += n;

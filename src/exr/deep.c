@@ -4,14 +4,14 @@
 
 #include "base/mem.h"
 
-static bool reserve(void **buffer, uint64_t *room, uint64_t n)
+static bool reserve(void **buffer, uint64_t *capacity, uint64_t n)
 {
-    if (n <= *room) return true;
+    if (n <= *capacity) return true;
     if (n > EXRIO_MAX_CHUNK_BYTES) return false;
     void *grown = mem_grow(*buffer, (size_t)n, 1, NULL);
     if (!grown) return false;
     *buffer = grown;
-    *room = n;
+    *capacity = n;
     return true;
 }
 
@@ -19,8 +19,8 @@ exr_result_t deep_read(exr_const_context_t core, int part, int y, deep_chunk *c)
 {
     exr_result_t rv = exr_read_scanline_chunk_info(core, part, y, &c->info);
     if (rv != EXR_ERR_SUCCESS) return rv;
-    if (!reserve(&c->packed, &c->packed_room, c->info.packed_size) ||
-        !reserve(&c->counts, &c->counts_room, c->info.sample_count_table_size))
+    if (!reserve(&c->packed, &c->packed_capacity, c->info.packed_size) ||
+        !reserve(&c->counts, &c->counts_capacity, c->info.sample_count_table_size))
         return EXR_ERR_OUT_OF_MEMORY;
     return exr_read_deep_chunk(core, part, &c->info, c->packed, c->counts);
 }

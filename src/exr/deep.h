@@ -7,7 +7,7 @@
 typedef struct deep_chunk {
     exr_chunk_info_t info;
     void *packed, *counts; // owned; grown as needed
-    uint64_t packed_room, counts_room;
+    uint64_t packed_capacity, counts_capacity;
 } deep_chunk;
 
 // The chunk that holds line y.

@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "base/threads.h"
-#include "gbuffer/half.h"
+#include "gbuffer/half_size.h"
 
 // How far a small pixel may lie off a pixel's tangent plane, in pixels at its depth, and the least cosine of their normals, for
 // its light to count.
@@ -25,24 +25,24 @@ static vec3 normal_at(const gbuffer *g, size_t i)
 }
 
 // Whether the small pixel shows the surface that lies at `p` with normal `n`.
-static bool shows(const gbuffer *small, int x, int y, vec3 p, vec3 n, double room)
+static bool shows(const gbuffer *small, int x, int y, vec3 p, vec3 n, double margin)
 {
     if (x < 0 || y < 0 || x >= small->width || y >= small->height || !(small->depth[at(small, x, y)] > 0.0f)) return false;
     return v3_dot(n, normal_at(small, at(small, x, y))) >= LIKE &&
-           fabs(v3_dot(n, v3_sub(gbuffer_position(small, x, y), p))) <= room;
+           fabs(v3_dot(n, v3_sub(gbuffer_position(small, x, y), p))) <= margin;
 }
 
 static bool is_lone(const search *s, int x, int y)
 {
     const gbuffer *g = s->whole;
     vec3 p = gbuffer_position(g, x, y), n = normal_at(g, at(g, x, y));
-    double room = NEAR / fmin(g->camera.fx, g->camera.fy), share = 0.0;
-    if (g->camera.kind == CAMERA_PERSPECTIVE) room *= p.z;
+    double margin = NEAR / fmin(g->camera.fx, g->camera.fy), share = 0.0;
+    if (g->camera.kind == CAMERA_PERSPECTIVE) margin *= p.z;
     // The pixel's own block first: its share is enough.
     for (int k = 0; k < 4 && share < LEAST_SHARE; k++) {
         bool aside = k & 1, across = k >> 1;
         int sx = x / 2 + (aside ? 2 * (x % 2) - 1 : 0), sy = y / 2 + (across ? 2 * (y % 2) - 1 : 0);
-        if (shows(s->small, sx, sy, p, n, room)) share += (aside ? 0.25 : 0.75) * (across ? 0.25 : 0.75);
+        if (shows(s->small, sx, sy, p, n, margin)) share += (aside ? 0.25 : 0.75) * (across ? 0.25 : 0.75);
     }
     return share < LEAST_SHARE;
 }

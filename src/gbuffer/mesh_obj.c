@@ -11,10 +11,10 @@ typedef struct reader {
     mesh_lines lines;
     obj_mesh *m;
     float (*colours)[3]; // of each vertex; red < 0: none
-    size_t vertex_room, triangle_room;
+    size_t vertex_capacity, triangle_capacity;
     unsigned *corners; // of the face being read
     unsigned (*cut)[3];
-    size_t corner_room;
+    size_t corner_capacity;
     mesh_materials materials;
     float kd[3]; // of the material in use
     log_t *log;
@@ -29,23 +29,23 @@ static bool fail(const reader *r, const char *what)
 
 static bool room_for_vertex(reader *r)
 {
-    if (r->m->vertex_count < r->vertex_room) return true;
-    size_t room = 2 * r->vertex_room + 1024;
-    vec3 *v = mem_grow(r->m->vertices, room, sizeof *v, r->e);
+    if (r->m->vertex_count < r->vertex_capacity) return true;
+    size_t capacity = 2 * r->vertex_capacity + 1024;
+    vec3 *v = mem_grow(r->m->vertices, capacity, sizeof *v, r->e);
     if (v) r->m->vertices = v;
-    float(*c)[3] = v ? mem_grow(r->colours, room, sizeof *c, r->e) : NULL;
-    if (c) r->colours = c, r->vertex_room = room;
+    float(*c)[3] = v ? mem_grow(r->colours, capacity, sizeof *c, r->e) : NULL;
+    if (c) r->colours = c, r->vertex_capacity = capacity;
     return c != NULL;
 }
 
 static bool room_for_triangles(reader *r, size_t n)
 {
-    if (r->m->triangle_count + n <= r->triangle_room) return true;
-    size_t room = 2 * r->triangle_room + n + 1024;
-    unsigned(*t)[3] = mem_grow(r->m->triangles, room, sizeof *t, r->e);
+    if (r->m->triangle_count + n <= r->triangle_capacity) return true;
+    size_t capacity = 2 * r->triangle_capacity + n + 1024;
+    unsigned(*t)[3] = mem_grow(r->m->triangles, capacity, sizeof *t, r->e);
     if (t) r->m->triangles = t;
-    float(*a)[3] = t ? mem_grow(r->m->albedo, room, sizeof *a, r->e) : NULL;
-    if (a) r->m->albedo = a, r->triangle_room = room;
+    float(*a)[3] = t ? mem_grow(r->m->albedo, capacity, sizeof *a, r->e) : NULL;
+    if (a) r->m->albedo = a, r->triangle_capacity = capacity;
     return a != NULL;
 }
 
@@ -110,12 +110,12 @@ static bool has_area(const vec3 *v, const unsigned t[3])
 
 static bool room_for_corner(reader *r, size_t n)
 {
-    if (n < r->corner_room) return true;
-    size_t room = 2 * r->corner_room + 16;
-    unsigned *c = mem_grow(r->corners, room, sizeof *c, r->e);
+    if (n < r->corner_capacity) return true;
+    size_t capacity = 2 * r->corner_capacity + 16;
+    unsigned *c = mem_grow(r->corners, capacity, sizeof *c, r->e);
     if (c) r->corners = c;
-    unsigned(*t)[3] = c ? mem_grow(r->cut, room, sizeof *t, r->e) : NULL;
-    if (t) r->cut = t, r->corner_room = room;
+    unsigned(*t)[3] = c ? mem_grow(r->cut, capacity, sizeof *t, r->e) : NULL;
+    if (t) r->cut = t, r->corner_capacity = capacity;
     return t != NULL;
 }
 

@@ -89,7 +89,7 @@ typedef struct aged {
 typedef struct aged_list {
     bool (*counts)(const char *name);
     aged *list;
-    size_t count, room;
+    size_t count, capacity;
 } aged_list;
 
 static void add_aged(void *context, const char *folder, const char *name)
@@ -99,10 +99,10 @@ static void add_aged(void *context, const char *folder, const char *name)
     struct stat st;
     int n = snprintf(path, sizeof path, "%s/%s", folder, name);
     if (!l->counts(name) || n < 0 || (size_t)n >= sizeof path || lstat(path, &st) != 0) return;
-    if (l->count == l->room) {
-        aged *grown = mem_grow(l->list, 2 * l->room + 64, sizeof *grown, NULL);
+    if (l->count == l->capacity) {
+        aged *grown = mem_grow(l->list, 2 * l->capacity + 64, sizeof *grown, NULL);
         if (!grown) return;
-        l->list = grown, l->room = 2 * l->room + 64;
+        l->list = grown, l->capacity = 2 * l->capacity + 64;
     }
     char *copy = mem_string(path, NULL);
     if (copy) l->list[l->count++] = (aged){st.st_mtim, copy};

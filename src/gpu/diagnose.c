@@ -79,13 +79,13 @@ char *diagnose_translate(const char *log, const char *const files[], int count, 
     for (int i = 0; i < count; i++)
         if (strlen(files[i]) > longest) longest = strlen(files[i]);
     for (const char *p = log; *p; p++) lines += *p == '\n';
-    size_t room = strlen(log) + lines * (longest + 24) + 1, used = 0;
-    char *out = mem_zero(room, 1, e);
+    size_t capacity = strlen(log) + lines * (longest + 24) + 1, used = 0;
+    char *out = mem_zero(capacity, 1, e);
     for (const char *p = log; out && *p; p = next_line(p)) {
         diagnose_place place;
         const char *text = p;
         if (diagnose_line(p, &place) && place.file < count) {
-            used += (size_t)snprintf(out + used, room - used, "%s:%d: ", files[place.file], place.line);
+            used += (size_t)snprintf(out + used, capacity - used, "%s:%d: ", files[place.file], place.line);
             text = place.text;
         }
         size_t n = (size_t)(next_line(p) - text);

@@ -15,9 +15,9 @@ gpu_habits gpu_choose_habits(bool software, const char *version, const gpu_limit
 {
     // As many as the largest program names when it reads by images: the composite, and s3ho's filter of 16 coefficients.
     enum { ENOUGH = 16 };
-    bool room = l->image_units >= ENOUGH && l->images >= ENOUGH && l->outputs >= ENOUGH;
-    gpu_habits h = {.read_images = software && room && reads_beyond_edges(version), .draw = software};
-    if (read && strcmp(read, "image") == 0) h.read_images = room;
+    bool enough = l->image_units >= ENOUGH && l->images >= ENOUGH && l->outputs >= ENOUGH;
+    gpu_habits h = {.read_images = software && enough && reads_beyond_edges(version), .draw = software};
+    if (read && strcmp(read, "image") == 0) h.read_images = enough;
     if (read && strcmp(read, "texture") == 0) h.read_images = false;
     if (draw) h.draw = strcmp(draw, "0") != 0;
     return h;

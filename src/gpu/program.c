@@ -16,7 +16,7 @@ enum { MAX_SOURCES = 24 };
 // A growing text, and the files it was spliced from: GLSL's "#line n file" carries an index into `files`.
 typedef struct splice {
     char *text;
-    size_t length, room;
+    size_t length, capacity;
     const char *files[MAX_SOURCES];
     char *loaded[MAX_SOURCES]; // texts read from disk, to be freed
     int file_count;
@@ -24,12 +24,12 @@ typedef struct splice {
 
 static bool append(splice *s, const char *text, size_t n, error *e)
 {
-    if (s->length + n + 1 > s->room) {
-        size_t room = (s->length + n + 1) * 2;
-        char *grown = mem_grow(s->text, room, 1, e);
+    if (s->length + n + 1 > s->capacity) {
+        size_t capacity = (s->length + n + 1) * 2;
+        char *grown = mem_grow(s->text, capacity, 1, e);
         if (!grown) return false;
         s->text = grown;
-        s->room = room;
+        s->capacity = capacity;
     }
     memcpy(s->text + s->length, text, n);
     s->length += n;

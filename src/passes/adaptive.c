@@ -113,14 +113,14 @@ static bool settle(work *w, int round)
         if (!w->active[i]) continue;
         r->last[i] = (unsigned char)round;
         float *t = w->read[i];
-        w->active[i] = t[1] > 0.0f && sqrt((double)t[0] / (double)t[1]) >= w->c->set.error;
+        w->active[i] = t[1] > 0.0f && sqrt((double)t[0] / (double)t[1]) >= w->c->set.target_error;
         left |= w->active[i];
         r->above += w->active[i];
     }
     return left;
 }
 
-static bool make_room(work *w, error *e)
+static bool make_images(work *w, error *e)
 {
     pass_context *c = w->c;
     adaptive_sampling *r = &c->adaptive;
@@ -173,7 +173,7 @@ bool arc_run_adaptive(pass_context *c, const char *what, error *e)
     work w = {.c = c};
     int timings = c->timing_count, round = 0;
     pass_timing clock = pass_clock(c, "arc");
-    bool ok = make_room(&w, e), left = w.tiles.occupied_count > 0;
+    bool ok = make_images(&w, e), left = w.tiles.occupied_count > 0;
     for (; ok && left; round++) {
         ok = march(&w, what, round, e) && denoise(&w, e) && measure(&w, e);
         left =

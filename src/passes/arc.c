@@ -90,8 +90,8 @@ void arc_put(float to[4], vec3 a, double w) { to[0] = (float)a.x, to[1] = (float
 static void put_plane(float row[PLANE_COLUMNS][4], const plane *p, bool uneven)
 {
     arc_put(row[PLANE_EQUATION], p->normal, p->offset);
-    for (int i = 0; i < 2; i++) arc_put(row[PLANE_U + i], v3_scale(p->axis[i], 1.0 / p->half[i]), p->centre[i] / p->half[i]);
-    arc_put(row[PLANE_LIGHT], v3(0, 0, 0), uneven ? -p->room : p->room);
+    for (int i = 0; i < 2; i++) arc_put(row[PLANE_U + i], v3_scale(p->axis[i], 1.0 / p->extent[i]), p->centre[i] / p->extent[i]);
+    arc_put(row[PLANE_LIGHT], v3(0, 0, 0), uneven ? -p->margin : p->margin);
     for (int y = 0; y < PLANE_CELLS; y++) row[PLANE_MASK + y / 4][y % 4] = (float)p->cells[y];
 }
 
@@ -105,7 +105,7 @@ static bool make_planes(pass_context *c, error *e)
     for (int i = 0; i < c->planes.count + c->planes.uneven; i++)
         log_info(c->log, "%s %d: %.1f %% of the surfaces, %.3g x %.3g scene units",
                  i == c->planes.count ? "uneven ground, as plane" : "plane", i + 1, 100.0 * c->planes.planes[i].share,
-                 2.0 * c->planes.planes[i].half[0], 2.0 * c->planes.planes[i].half[1]);
+                 2.0 * c->planes.planes[i].extent[0], 2.0 * c->planes.planes[i].extent[1]);
     if (!gpu_image_make(c->g, &c->image[IMAGE_PLANES], GL_RGBA32F, PLANE_COLUMNS, PLANES_MAX + 1, 1, e)) return false;
     gpu_image_upload(c->g, &c->image[IMAGE_PLANES], 0, rows[0][0]);
     return true;
@@ -194,7 +194,7 @@ static bool run_bent(pass_context *c, const char *what, error *e)
 
 bool arc_run_occlusion(pass_context *c, const char *what, error *e)
 {
-    if (c->set.error > 0.0) return arc_run_adaptive(c, what, e) && (!c->want_bent || run_bent(c, what, e));
+    if (c->set.target_error > 0.0) return arc_run_adaptive(c, what, e) && (!c->want_bent || run_bent(c, what, e));
     const arc_params params = arc_params_of(c);
     bool half_difference = arc_has_half_difference(&c->set);
     variant v = arc_variant(c, what);

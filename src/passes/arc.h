@@ -42,8 +42,8 @@ int arc_round_slices(int round); // in all, after it
 int arc_round_steps(int round);  // a side, of what it adds
 
 // Occlusion, in rounds that double the slices of a tile until its estimated standard error (denoise.comp, root mean square over
-// the tile's surfaces) is below c->set.error or a further round would take more than c->set.most_samples. `what` names what
-// blocks. Fills the occlusion, denoised, c->adaptive and, if wanted, the error.
+// the tile's surfaces) is below c->set.target_error or a further round would take more than c->set.most_samples. `what` names
+// what blocks. Fills the occlusion, denoised, c->adaptive and, if wanted, the error.
 bool arc_run_adaptive(pass_context *c, const char *what, error *e);
 // pass_run of a call of an arc shader with these parameters (the call's own are ignored), after rounds with as many slices as
 // each tile came to.

@@ -82,8 +82,8 @@ static bounds crowd(const builder *b, int level)
         box.low[k] = low - 0.5 * (high - low), box.high[k] = high + 0.5 * (high - low);
     }
     // A flat crowd is given some height, or what stands on it would not belong to it.
-    double room = 0.05 * diagonal(&box);
-    for (int k = 0; k < 3; k++) box.low[k] -= room, box.high[k] += room;
+    double margin = 0.05 * diagonal(&box);
+    for (int k = 0; k < 3; k++) box.low[k] -= margin, box.high[k] += margin;
     return box;
 }
 
@@ -164,7 +164,7 @@ static bool crosses(const grid_level *l, const slab *s, const int at[3])
     return fabs(distance) <= reach;
 }
 
-// Counts the triangles of every cell (items NULL), or writes them where the counts have made room.
+// Counts the triangles of every cell (items NULL), or writes them where the counts have made margin.
 static void enter_all(builder *b, uint32_t *items)
 {
     for (size_t t = 0; t < b->count; t++) {

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "gbuffer/gbuffer.h"
-#include "gbuffer/half.h"
+#include "gbuffer/half_size.h"
 #include "gbuffer/world_view.h"
 #include "gpu/gpu.h"
 #include "light/environment.h"
@@ -45,12 +45,12 @@ typedef struct pass_settings {
     double thickness;     // scene units; INFINITY allowed
     bool thickness_fixed; // asked for by the user: no method may find a better one
     int samples;
-    double error;      // > 0: sample in rounds until the standard error of the occlusion is below this
-    int most_samples;  // limit for those rounds
-    int blur;          // pixels, 0 none
-    int sh_bands;      // s3ho: highest l, 2 (0 too) or 3
-    double sh_sigma;   // s3ho: radians of the low-pass
-    double angle_bias; // hbao: degrees above the tangent where occlusion begins
+    double target_error; // > 0: sample in rounds until the standard error of the occlusion is below this
+    int most_samples;    // limit for those rounds
+    int blur;            // pixels, 0 none
+    int sh_bands;        // s3ho: highest l, 2 (0 too) or 3
+    double sh_sigma;     // s3ho: radians of the low-pass
+    double angle_bias;   // hbao: degrees above the tangent where occlusion begins
     double scale, contrast;
     double env_level; // < 0: by solid angle
     double bounce_strength;
@@ -229,8 +229,8 @@ bool pass_denoise(pass_context *c, error *e); // occlusion: in place
 bool pass_at_lone(pass_context *c, const pass_call *march, image_set made, error *e);
 // In place, over `radius` pixels; NULL = none.
 bool pass_blur(pass_context *c, int radius, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e);
-// Brings layers of a frame of half the size (gbuffer/half.h) to the size of `c`: the images of `which` that `small` has and `c`
-// lacks.
+// Brings layers of a frame of half the size (gbuffer/half_size.h) to the size of `c`: the images of `which` that `small` has and
+// `c` lacks.
 bool pass_upsample(pass_context *c, const pass_context *small, image_set which, error *e);
 // Makes or replaces images of the smaller frame `c`: of each pixel's block the mean over the pixels of `whole` that are on its
 // surface. Colours only.

@@ -141,7 +141,7 @@ static void support(const finder *f, plane *p)
         least = area;
         for (int k = 0; k < 2; k++) {
             p->axis[k] = axis[k];
-            p->centre[k] = 0.5 * (low[k] + high[k]), p->half[k] = 0.5 * (high[k] - low[k]);
+            p->centre[k] = 0.5 * (low[k] + high[k]), p->extent[k] = 0.5 * (high[k] - low[k]);
         }
     }
 }
@@ -170,7 +170,7 @@ static bool meets(const finder *f, const plane *p, const surface *s, vec3 *hit)
 
 static int cell_of(const plane *p, int axis, vec3 at)
 {
-    double x = (v3_dot(p->axis[axis], at) - p->centre[axis]) / p->half[axis]; // -1 .. 1
+    double x = (v3_dot(p->axis[axis], at) - p->centre[axis]) / p->extent[axis]; // -1 .. 1
     return fabs(x) <= 1.0 ? (int)fmin((x + 1.0) * 0.5 * PLANE_CELLS, PLANE_CELLS - 1) : -1;
 }
 
@@ -203,7 +203,7 @@ static int find_plane(finder *f, double smallest, plane *p)
     for (int i = 0; i < REFINEMENTS; i++) refine(f, p);
     support(f, p);
     int n = take(f, p);
-    p->room = f->distance;
+    p->margin = f->distance;
     p->share = (double)n / f->total;
     return n < smallest * f->total ? 0 : n;
 }
@@ -233,7 +233,7 @@ bool planes_find(const gbuffer *gb, plane_set *out, error *e)
     out->samples = f.total;
     out->found = true;
     if (f.orthographic)
-        for (int i = 0; i < out->count + out->uneven; i++) out->planes[i].room *= gb->extent;
+        for (int i = 0; i < out->count + out->uneven; i++) out->planes[i].margin *= gb->extent;
     free(f.s);
     return true;
 }

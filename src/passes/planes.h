@@ -11,14 +11,14 @@
 enum { PLANES_MAX = 12, PLANE_CELLS = 16 };
 
 // normal . x = offset in camera space; the normal is unit and faces the eye. The support is the rectangle of least area that
-// holds all samples: |axis[i] . x - centre[i]| <= half[i], the axes unit and perpendicular to the normal. It is divided into
+// holds all samples: |axis[i] . x - centre[i]| <= extent[i], the axes unit and perpendicular to the normal. It is divided into
 // PLANE_CELLS x PLANE_CELLS cells. Bit x of row y is clear where the picture shows that the plane is absent (a hole, the corner
 // beside a disc).
 typedef struct plane {
     vec3 normal, axis[2];
-    double offset, centre[2], half[2];
-    double share; // of the frame's surfaces
-    double room;  // how far off the plane a surface may lie: a share of its depth; with an orthographic camera a length
+    double offset, centre[2], extent[2];
+    double share;  // of the frame's surfaces
+    double margin; // how far off the plane a surface may lie: a share of its depth; with an orthographic camera a length
     unsigned short cells[PLANE_CELLS];
 } plane;
 

@@ -126,13 +126,13 @@ void trace_scene_close(trace_scene *s)
 
 static bool send_to_embree(trace_scene *s, gpu *g, const gpu_buffer *rays, gpu_buffer *hits, size_t count, error *e)
 {
-    if (count > s->room) {
+    if (count > s->capacity) {
         free(s->rays), free(s->hits);
-        s->room = 0;
+        s->capacity = 0;
         s->rays = mem_pixels(count, sizeof *s->rays, e);
         s->hits = mem_pixels(count, sizeof *s->hits, e);
         if (!s->rays || !s->hits) return false;
-        s->room = count;
+        s->capacity = count;
     }
     gpu_buffer_read(g, rays, s->rays, count * sizeof *s->rays);
     trace_cpu_rays(s->cpu, s->rays, s->hits, count);

@@ -26,7 +26,7 @@ typedef struct trace_scene {
     size_t chunk;    // rays of the grid's next dispatch, such that it takes a few ten milliseconds
     trace_ray *rays; // Embree's copies, owned
     trace_hit *hits;
-    size_t room;
+    size_t capacity;
     gpu_buffer alias_table; // the environment's (light/alias_table.h)
     int table_size[2];
 } trace_scene;

@@ -5,7 +5,7 @@
 // A surface may bend by this many footprints of a small pixel off the pixel's tangent plane before a tap loses weight.
 static const float SHARPNESS = 0.5f;
 // On the way down a pixel counts if it lies this near the small one's tangent plane, in its own footprints, and its normal has at
-// least this cosine with the small one's: as gbuffer/half.c brings colours down.
+// least this cosine with the small one's: as gbuffer/half_size.c brings colours down.
 static const float NEAR = 2.0f, LIKE = 0.7f;
 
 enum { SCALARS = 2, COLOURS = 2 }; // of a draw

@@ -19,7 +19,7 @@ static uint8_t *read_file(const char *path, size_t *size)
 static uint32_t big_endian(const uint8_t *b) { return (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3]; }
 
 // PNG is a signature and chunks: length, name, that many bytes, checksum of name and bytes. The last is IEND.
-static bool find_text(const uint8_t *png, size_t size, const char *key, char *text, size_t room)
+static bool find_text(const uint8_t *png, size_t size, const char *key, char *text, size_t capacity)
 {
     static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     size_t at = sizeof signature, key_size = strlen(key) + 1;
@@ -30,7 +30,7 @@ static bool find_text(const uint8_t *png, size_t size, const char *key, char *te
         size_t n = big_endian(png + at);
         if (n > size - at - 12 || libdeflate_crc32(0, name, n + 4) != big_endian(data + n)) return false;
         if (memcmp(name, "tEXt", 4) == 0 && n >= key_size && memcmp(data, key, key_size) == 0) {
-            size_t length = n - key_size < room - 1 ? n - key_size : room - 1;
+            size_t length = n - key_size < capacity - 1 ? n - key_size : capacity - 1;
             memcpy(text, data + key_size, length);
             text[length] = 0;
             found = true;

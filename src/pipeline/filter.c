@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "gbuffer/half.h"
+#include "gbuffer/half_size.h"
 #include "pipeline/read_back.h"
 
 // The times of the small frame's passes belong to the frame.
@@ -20,8 +20,8 @@ static bool halve(const job *j, frame_result *r, error *e)
     if (r->uncovered) whole.coverage = NULL;
     if (!(given & IMAGE_BIT(IMAGE_ALBEDO))) whole.albedo = NULL;
     if (!(given & IMAGE_BIT(IMAGE_BEAUTY))) whole.beauty = NULL;
-    return gbuffer_halve(&whole, j->threads, &r->half, e) &&
-           (r->set.size != SIZE_LIGHT || gbuffer_lone(&whole, &r->half, j->threads, &r->lone, e));
+    return gbuffer_halve(&whole, j->threads, &r->half_size, e) &&
+           (r->set.size != SIZE_LIGHT || gbuffer_lone(&whole, &r->half_size, j->threads, &r->lone, e));
 }
 
 // ---- the list of steps, run
@@ -29,7 +29,7 @@ static bool halve(const job *j, frame_result *r, error *e)
 // The frame, and while steps run on it the one of half its size.
 typedef struct runner {
     pass_context *whole, small;
-    const gbuffer *half;
+    const gbuffer *half_size;
     bool open; // small is
 } runner;
 
@@ -37,7 +37,7 @@ static bool open_small(runner *r, error *e)
 {
     pass_settings set = r->whole->set;
     set.blur = set.size == SIZE_LIGHT ? (3 * set.blur + 3) / 4 : (set.blur + 1) / 2; // as wide on the surface as at full size
-    r->small = pass_like(r->whole, r->half, &set);
+    r->small = pass_like(r->whole, r->half_size, &set);
     if (set.size == SIZE_LIGHT) r->small.whole = r->whole, r->small.whole_side = 2;
     r->open = pass_begin(&r->small, e);
     return r->open;
@@ -81,9 +81,9 @@ static bool small_is_needed(const step_list *l, int after)
     return false;
 }
 
-static bool run_steps(pass_context *c, const gbuffer *half, const step_list *l, error *e)
+static bool run_steps(pass_context *c, const gbuffer *half_size, const step_list *l, error *e)
 {
-    runner r = {.whole = c, .half = half};
+    runner r = {.whole = c, .half_size = half_size};
     bool ok = true;
     for (int i = 0; ok && i < l->count; i++) {
         if (!l->steps[i].runs) continue;
@@ -98,12 +98,12 @@ static void take_adaptive(const job *j, frame_result *r, const adaptive_sampling
 {
     r->rounds = rounds->count, r->tiles_above = rounds->above, r->mean_samples = rounds->mean_samples;
     if (r->rounds == 0) return;
-    log_info(j->log, "--error %g: %.0f samples a pixel in the mean, %d rounds", r->set.error, r->mean_samples, r->rounds);
+    log_info(j->log, "--error %g: %.0f samples a pixel in the mean, %d rounds", r->set.target_error, r->mean_samples, r->rounds);
     if (r->tiles_above > 0)
         log_warn(j->log, "error",
                  "%d of %d tiles of a frame have an estimated standard error above %g after %d samples; --samples allows more; "
                  "the report says so of each frame",
-                 r->tiles_above, rounds->tiles.occupied_count, r->set.error, rounds->most_samples);
+                 r->tiles_above, rounds->tiles.occupied_count, r->set.target_error, rounds->most_samples);
 }
 
 // Without coverage the passes take a pixel for covered where it has a surface.
@@ -119,7 +119,7 @@ bool filter_prepare(const job *j, frame_result *r, error *e)
 {
     if (!r->prepared) r->uncovered = !needs_coverage(&r->gb);
     r->prepared = true;
-    return !steps_use_small(&r->plan, &r->set) || r->half.depth || halve(j, r, e);
+    return !steps_use_small(&r->plan, &r->set) || r->half_size.depth || halve(j, r, e);
 }
 
 void filter_list(const frame_result *r, bool suns, step_list *out)
@@ -182,7 +182,7 @@ bool filter_begin(job *j, frame_result *r, error *e)
     };
     for (int k = 0; k < SH_IMAGES; k++) c.relight_sh[k] = r->relight_sh[k];
     if (!pass_begin(&c, e)) return false;
-    bool ok = list_steps(j, &c, r, e) && run_steps(&c, &r->half, &r->steps, e) && gpu_finish(&j->g, "the passes", e);
+    bool ok = list_steps(j, &c, r, e) && run_steps(&c, &r->half_size, &r->steps, e) && gpu_finish(&j->g, "the passes", e);
     stopwatch_add(&t, &r->wall_ms[STAGE_PASSES], &r->cpu_ms[STAGE_PASSES]);
     ok = ok && !job_stopped(j) && read_back_begin(j, &c, r, e);
     stopwatch_add(&t, &r->wall_ms[STAGE_READ_BACK], &r->cpu_ms[STAGE_READ_BACK]);
@@ -193,7 +193,7 @@ bool filter_begin(job *j, frame_result *r, error *e)
     take_counts(r, &c);
     r->gl = gpu_counts_since(&j->g, &before);
     pass_end(&c);
-    gbuffer_free(&r->half);
+    gbuffer_free(&r->half_size);
     pixel_list_free(&r->lone);
     return ok;
 }

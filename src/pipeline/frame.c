@@ -134,7 +134,7 @@ static void free_view(frame_result *r)
         for (int k = 0; k < LAYER_CHANNELS; k++) free(r->samples[i][k]);
     }
     read_back_drop(r);
-    gbuffer_free(&r->half);
+    gbuffer_free(&r->half_size);
     pixel_list_free(&r->lone);
     for (int k = 0; k < SH_IMAGES; k++) free(r->relight_sh[k]);
     proxies_free(&r->proxies);

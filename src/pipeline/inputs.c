@@ -13,11 +13,11 @@ bool inputs_of_frame(const options *o, int frame, input_paths *out)
     for (int i = 0; i < o->input_count; i++) {
         bool fits = strlen(o->inputs[i]) < INPUT_PATH;
         if (!o->literal && pattern_is(o->inputs[i]))
-            fits = pattern_path(o->inputs[i], frame, out->room[i], INPUT_PATH);
+            fits = pattern_path(o->inputs[i], frame, out->text[i], INPUT_PATH);
         else if (fits)
-            snprintf(out->room[i], INPUT_PATH, "%s", o->inputs[i]);
+            snprintf(out->text[i], INPUT_PATH, "%s", o->inputs[i]);
         if (!fits) return false;
-        out->list[i] = out->room[i];
+        out->list[i] = out->text[i];
     }
     return true;
 }

@@ -8,7 +8,7 @@
 enum { INPUT_PATH = 4096 };
 
 typedef struct input_paths {
-    char room[OPT_MAX_INPUTS][INPUT_PATH];
+    char text[OPT_MAX_INPUTS][INPUT_PATH];
     const char *list[OPT_MAX_INPUTS];
     int count;
 } input_paths;

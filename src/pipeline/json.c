@@ -12,10 +12,10 @@ void json_put(json_object *o, const char *key, json_object *value) { json_object
 json_object *json_text(const char *s)
 {
     if (!s) return NULL;
-    size_t room = text_utf8_room(s);
-    char *text = malloc(room);
+    size_t capacity = text_utf8_room(s);
+    char *text = malloc(capacity);
     if (!text) return NULL;
-    text_utf8(s, text, room);
+    text_utf8(s, text, capacity);
     json_object *o = json_object_new_string(text);
     free(text);
     return o;

@@ -91,7 +91,7 @@ static exrio_out_part part_like(const options *o, const exrio_file *f, int index
                             .attributes_part = index};
 }
 
-static bool room(exrio_out_part *part, int count, error *e)
+static bool make_channels(exrio_out_part *part, int count, error *e)
 {
     part->channels = mem_zero((size_t)count, sizeof *part->channels, e);
     return part->channels != NULL;
@@ -161,7 +161,7 @@ static bool merge_parts(book *k, assembly *a, const job *j, const frame_result *
     if (view) only->view = view;
     if (view && !only->name[0]) only->name = view;
     if (has_deep(f) && !only->name[0]) only->name = "input"; // parts of a multi-part file need names
-    if (!room(only, total_channels(f) + MAX_OURS * view_count(r), e)) return false;
+    if (!make_channels(only, total_channels(f) + MAX_OURS * view_count(r), e)) return false;
     add_sources(k, only, r);
     for (int i = 0; !j->o->keep_none && i < f->part_count; i++)
         if (part_is_of_view(&f->parts[i], r->view))
@@ -176,7 +176,7 @@ static bool keep_part(book *k, const job *j, const frame_result *r, int i, error
     exrio_out_part *part = &k->parts[k->part_count++];
     *part = part_like(j->o, f, i);
     if (output_keeps_chunks(j->o, f, i, &r->plan)) part->compression = f->parts[i].compression;
-    if (!room(part, f->parts[i].channel_count, e)) return false;
+    if (!make_channels(part, f->parts[i].channel_count, e)) return false;
     part->channel_count = keep_channels(j, r, &f->parts[i], false, part->channels);
     part->verbatim = output_keeps_chunks(j->o, f, i, &r->plan);
     part->deep = f->parts[i].deep;
@@ -198,7 +198,7 @@ static bool add_part(book *k, assembly *a, const job *j, frame_result *r, error 
     mine->name = a->part_name;
     if (view) mine->view = view;
     mine->attributes_from = NULL;
-    if (!room(mine, MAX_OURS * view_count(r), e)) return false;
+    if (!make_channels(mine, MAX_OURS * view_count(r), e)) return false;
     append_ours(a, mine);
     r->second_part = true;
     if (!j->o->multipart)

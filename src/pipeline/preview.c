@@ -105,7 +105,7 @@ static uint8_t shade(const frame_result *r, layer_id l, const dot *d, int k)
     case DISPLAY_DARKENING:
         return share(d->v[0] + 1.0f);
     case DISPLAY_ERROR:
-        return share(d->v[0] / (2.0f * (float)r->set.error));
+        return share(d->v[0] / (2.0f * (float)r->set.target_error));
     default:
         return share(d->v[0]);
     }

@@ -27,17 +27,17 @@ struct layer_band {
 typedef struct layer_band band;
 
 // Memory that all layers of a frame use in turn.
-typedef struct room {
+typedef struct scratch_memory {
     float *v;
     size_t size;
-} room;
+} scratch_memory;
 
 // The rows as they come, where nothing is mapped, and each thread's piece.
 typedef struct workspace {
-    room rows, scratch;
+    scratch_memory rows, scratch;
 } workspace;
 
-static bool provide(room *m, size_t size, error *e)
+static bool provide(scratch_memory *m, size_t size, error *e)
 {
     if (m->size >= size) return true;
     free(m->v);
@@ -102,7 +102,7 @@ static sample_type type_of(const job *j, const frame_result *r, layer_id l)
     return SAMPLE_HALF;
 }
 
-static bool make_room(const job *j, layer_id l, frame_result *r, error *e)
+static bool make_samples(const job *j, layer_id l, frame_result *r, error *e)
 {
     size_t pixels = (size_t)r->gb.width * (size_t)r->gb.height, channels = channels_of(l);
     r->types[l] = type_of(j, r, l);
@@ -155,7 +155,7 @@ static bool convert_band(const job *j, frame_result *r, const band *b, workspace
     conversion c = {.r = r, .b = b, .rows = piece_rows(r, b->stored)};
     size_t pieces = (size_t)(b->rows + c.rows - 1) / (size_t)c.rows;
     size_t threads = pieces < (size_t)j->threads ? pieces : (size_t)j->threads;
-    if (!make_room(j, b->layer, r, e) || !provide(&w->scratch, threads * scratch_size(&c), e)) return false;
+    if (!make_samples(j, b->layer, r, e) || !provide(&w->scratch, threads * scratch_size(&c), e)) return false;
     c.scratch = w->scratch.v;
     threads_for((int)threads, pieces, convert_piece, &c);
     r->clamped += c.clamped;

@@ -178,7 +178,7 @@ static json_object *planes_of(const frame_result *r)
 json_object *report_rounds(const frame_result *r)
 {
     json_object *o = json_object_new_object();
-    json_put_number(o, "error", r->set.error);
+    json_put_number(o, "error", r->set.target_error);
     json_put(o, "rounds", json_object_new_int(r->rounds));
     json_put_number(o, "mean_samples", r->mean_samples);
     json_put(o, "tiles_above", json_object_new_int(r->tiles_above));
@@ -206,8 +206,8 @@ static json_object *report_of(const job *j, const frame_result *r, const char *o
     json_put(o, "evidence", evidence);
     json_put(o, "camera", camera_of(r));
     json_put_text(o, "method", r->plan.method->name);
-    if (r->set.error <= 0.0) json_put(o, "samples", json_object_new_int(r->set.samples));
-    if (r->set.error > 0.0) json_put(o, "rounds", report_rounds(r));
+    if (r->set.target_error <= 0.0) json_put(o, "samples", json_object_new_int(r->set.samples));
+    if (r->set.target_error > 0.0) json_put(o, "rounds", report_rounds(r));
     json_put_number(o, "radius", r->set.radius);
     json_put_number(o, "thickness", r->set.thickness);
     json_put_number(o, "outside", r->set.outside);

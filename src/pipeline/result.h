@@ -4,7 +4,7 @@
 
 #include "base/clock.h"
 #include "gbuffer/gbuffer.h"
-#include "gbuffer/half.h"
+#include "gbuffer/half_size.h"
 #include "passes/pass.h"
 #include "pipeline/job.h"
 #include "pipeline/plan.h"
@@ -46,8 +46,8 @@ typedef struct frame_result {
     float *relight_sh[SH_IMAGES];   // --from-sh: what the input brought along, else NULL
     bool prepared;                  // by filter_prepare
     bool uncovered;                 // the coverage says nothing that the depth does not
-    gbuffer half;                   // the frame at half its size, until the passes have run
-    pixel_list lone;                // its pixels that `half` does not show, as long as that
+    gbuffer half_size;              // the frame at half its size, until the passes have run
+    pixel_list lone;                // its pixels that `half_size` does not show, as long as that
     bool second_part;               // our layers went into a part of their own
     const char *view;               // the stereo view this is, the file's string; NULL without views
     struct frame_result *next_view; // owned; shares the file

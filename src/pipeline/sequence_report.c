@@ -23,7 +23,7 @@ static void add_result(sequence_report *s, json_object *o, const frame_result *r
     json_put_number(o, "valid_share", pixels > 0 ? (double)r->gb.valid / pixels : 0.0);
     json_put_number(o, "off_frame_share", report_off_frame_share(r));
     json_put(o, "clamped_samples", json_object_new_int64((int64_t)r->clamped));
-    if (r->set.error > 0.0) json_put(o, "rounds", report_rounds(r));
+    if (r->set.target_error > 0.0) json_put(o, "rounds", report_rounds(r));
     s->clamped += r->clamped;
     for (int i = 0; i < STAGE_COUNT; i++) {
         s->wall_ms[i] += r->wall_ms[i];

@@ -140,7 +140,7 @@ pass_settings settings_of(const job *j, const frame_result *r, shot_facts shot)
         .outside = shot.outside,
         .size = size_of(j, r),
         .samples = o->samples > 0 && o->error <= 0.0 ? o->samples : samples_at(m, o->error > 0.0 ? 0 : o->quality),
-        .error = o->error,
+        .target_error = o->error,
         .most_samples = o->samples > 0 ? o->samples : ROUNDS_MOST_SAMPLES,
         .angle_bias = o->angle_bias,
         .sh_bands = o->sh_bands,

@@ -108,7 +108,7 @@ static image_set made_by(const step_facts *f)
     if (p->want_visibility && method_makes(p->method, MAKES_LIGHT)) made |= BIT(VISIBILITY);
     if (method_makes(p->method, MAKES_SH)) made |= vector_of(f->set);
     if (steps_bounce_within(f)) made |= BIT(INDIRECT);
-    if (method_makes(p->method, MAKES_ERROR) && (f->set->error > 0.0 || arc_has_half_difference(f->set)))
+    if (method_makes(p->method, MAKES_ERROR) && (f->set->target_error > 0.0 || arc_has_half_difference(f->set)))
         made |= BIT(HALF_DIFFERENCE);
     return made;
 }
@@ -127,9 +127,9 @@ static void add_method(builder *b, step_size size, image_set made)
 {
     const step_facts *f = b->f;
     const plan *p = f->plan;
-    const char *why = p->from_sh            ? "its SH layers are read from the file"
-                      : f->set->error > 0.0 ? "occlusion is always made, in rounds until its error is small enough"
-                                            : "occlusion is always made";
+    const char *why = p->from_sh                   ? "its SH layers are read from the file"
+                      : f->set->target_error > 0.0 ? "occlusion is always made, in rounds until its error is small enough"
+                                                   : "occlusion is always made";
     add(b, (plan_step){.pass = p->method->name,
                        .why = why,
                        .size = size,
@@ -181,7 +181,7 @@ static void add_filters(builder *b, step_size size)
 {
     bool difference = *there(b, size) & BIT(HALF_DIFFERENCE);
     if (!b->f->plan->blur) return;
-    if (difference && b->f->set->error <= 0.0) // rounds have denoised it
+    if (difference && b->f->set->target_error <= 0.0) // rounds have denoised it
         add(b, (plan_step){.pass = "denoise",
                            .why = "noise of the slices, known from their halves",
                            .size = size,
@@ -394,7 +394,7 @@ static void list_missing(const step_facts *f, step_list *l)
                 method_makes(p->method, MAKES_SH) ? "the method filters itself"
                 : p->blur                         ? "the occlusion is denoised, and nothing else was sampled"
                                                   : "--blur none");
-    add_missing(l, "denoise", p->blur && f->set->error > 0.0 ? "part of the rounds" : "too few slices, or none");
+    add_missing(l, "denoise", p->blur && f->set->target_error > 0.0 ? "part of the rounds" : "too few slices, or none");
     add_missing(l, "suns", "no light, or none of small bright sources");
     add_missing(l, "proxies", "no spheres are given");
     add_missing(l, "tone", "scale and contrast are 1");

@@ -25,7 +25,7 @@ static pass_settings settings(const bench_scene *s, int budget)
     bench_row row = {
         .kind = ROW_METHOD, .m = m, .samples = budget, .blur = m->blur, .thickness = -1.0, .scale = 1.0, .contrast = 1.0};
     pass_settings set = bench_settings(&row, s);
-    if (budget == 0) set.samples = m->samples, set.error = wanted, set.most_samples = ROUNDS_MOST_SAMPLES;
+    if (budget == 0) set.samples = m->samples, set.target_error = wanted, set.most_samples = ROUNDS_MOST_SAMPLES;
     return set;
 }
 

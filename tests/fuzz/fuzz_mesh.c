@@ -26,10 +26,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     check_error(mesh_read_mtl(mtl_path, &t, &e), &e);
     mesh_materials_free(&t);
     // The mesh names the material file first, whatever follows.
-    size_t room = strlen(text) + 128;
-    char *with = malloc(room);
+    size_t capacity = strlen(text) + 128;
+    char *with = malloc(capacity);
     CHECK(with);
-    int n = snprintf(with, room, "mtllib %s\n%s", mtl_path, text);
+    int n = snprintf(with, capacity, "mtllib %s\n%s", mtl_path, text);
     fuzz_file(&mesh_fd, mesh_path, with, (size_t)n);
     e = (error){0};
     bool ok = mesh_read_obj(mesh_path, &m, NULL, &e);

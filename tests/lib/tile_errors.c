@@ -9,7 +9,7 @@ float *tile_limit(rig *r, const gbuffer *gb, const method *m, pass_settings set,
 {
     size_t n = (size_t)gb->width * (size_t)gb->height;
     float *mean = mem_zero(n, sizeof *mean, e);
-    set.error = 0.0, set.blur = 0, set.samples = samples;
+    set.target_error = 0.0, set.blur = 0, set.samples = samples;
     for (int run = 0; mean && run < runs; run++) {
         frame_result f;
         set.seed = 1000 + run;

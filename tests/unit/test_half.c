@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "gbuffer/half.h"
+#include "gbuffer/half_size.h"
 #include "must.h"
 #include "near.h"
 #include "rig.h"

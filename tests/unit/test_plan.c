@@ -84,7 +84,7 @@ static pass_settings settings_for(const plan *p, const options *o)
 {
     return (pass_settings){.radius = 1.0,
                            .samples = p->method->samples,
-                           .error = o->error,
+                           .target_error = o->error,
                            .blur = o->blur < 0 ? p->method->blur : o->blur,
                            .sh_bands = o->sh_bands,
                            .size = o->resolution > RESOLUTION_FULL ? (estimate_size)o->resolution : SIZE_FULL,

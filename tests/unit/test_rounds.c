@@ -26,7 +26,7 @@ static pass_settings settings(double radius, double limit)
     set.thickness = m->thickness * radius;
     set.planes = true;
     set.blur = m->blur;
-    set.error = limit;
+    set.target_error = limit;
     set.most_samples = ROUNDS_MOST_SAMPLES;
     return set;
 }
@@ -61,7 +61,7 @@ static void the_estimate_holds(void **state)
         float *limit = tile_limit(&r, &f.gb, method_find("arc"), set, 2048, 1, &e);
         assert_non_null(limit);
         run(&r, &f.gb, &set, LAYERS, &out);
-        tile_errors t = tile_errors_of(&f.gb, out.layers[LAYER_OCCLUSION], limit, out.layers[LAYER_ERROR], set.error);
+        tile_errors t = tile_errors_of(&f.gb, out.layers[LAYER_OCCLUSION], limit, out.layers[LAYER_ERROR], set.target_error);
         printf(
             "figure: %s at 0.02: %.0f samples, true error %.4f, estimate %.4f; of %d tiles %d are within a factor of 2, %d have "
             "more than twice the estimate\n",

@@ -1,4 +1,4 @@
-#include "gbuffer/half.h"
+#include "gbuffer/half_size.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -59,8 +59,8 @@ static bool in_range(const gbuffer *g, int x, int y, double depth)
             if (i < 0 || j < 0 || i >= g->width || j >= g->height || !(g->depth[at(g, i, j)] > 0.0f)) continue;
             low = fmin(low, (double)g->depth[at(g, i, j)]), high = fmax(high, (double)g->depth[at(g, i, j)]);
         }
-    double room = high - low; // twice what the last, odd row of a plane needs
-    return depth >= low - room && depth <= high + room;
+    double margin = high - low; // twice what the last, odd row of a plane needs
+    return depth >= low - margin && depth <= high + margin;
 }
 
 // Cosine between a pixel's normal and its view ray.

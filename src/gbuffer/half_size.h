@@ -1,6 +1,6 @@
 // A frame at half its size in both directions, for --resolution half.
-#ifndef SSDO_GBUFFER_HALF_H
-#define SSDO_GBUFFER_HALF_H
+#ifndef SSDO_GBUFFER_HALF_SIZE_H
+#define SSDO_GBUFFER_HALF_SIZE_H
 
 #include "gbuffer/gbuffer.h"
 
