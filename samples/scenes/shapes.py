@@ -89,7 +89,9 @@ def solid(verts, faces, material, smooth=False, at=(0, 0, 0), turn=(0, 0, 0), sc
     bm.to_mesh(mesh)
     bm.free()
     mesh.polygons.foreach_set("use_smooth", [smooth] * len(mesh.polygons))
-    if smooth:
+    if smooth and hasattr(mesh, "set_sharp_from_angle"):  # Blender 4.1 and later
+        mesh.set_sharp_from_angle(angle=math.radians(35.0))
+    elif smooth:
         mesh.use_auto_smooth = True
         mesh.auto_smooth_angle = math.radians(35.0)
     mesh.materials.append(material)
