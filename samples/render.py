@@ -84,6 +84,7 @@ def around(layer, path, ahead):
 
 def make(name, args):
     builder, env, ao_distance, transparent = SCENES[name]
+    env = args.sky or env
     hot = name == "hot"
     spp = args.spp or SAMPLES_PER_PIXEL[name]
     os.makedirs(args.out, exist_ok=True)
@@ -92,7 +93,7 @@ def make(name, args):
         SKIES[env](env_path)
     bpy.ops.wm.read_factory_settings(use_empty=True)
     layout = Layout(name, args.variant)
-    rotate = layout.count(0, 1, 63) * 5.625  # whole texels: importance sampling stays exact
+    rotate = (layout.count(0, 1, 63) * 5.625 + args.turn) % 360.0  # whole texels: importance sampling stays exact
     builder(layout)
     world(env_path, rotate, hot, ao_distance)
     layer = settings(args.size, spp, args.seed, transparent, 0 if hot else 1)
@@ -149,6 +150,8 @@ def main():
     parser.add_argument("--seed", type=int, default=1, help="Cycles' sampling seed; the truth uses seed + 1000")
     parser.add_argument("--spp", type=int, default=0, help="samples per pixel; 0: the scene's own")
     parser.add_argument("--size", default=None, help="WIDTHxHEIGHT")
+    parser.add_argument("--sky", choices=list(SKIES), help="light the scene by this sky instead of its own")
+    parser.add_argument("--turn", type=float, default=0.0, help="turn the sky by this many degrees more, a multiple of 5.625")
     parser.add_argument("--around", action="store_true", help="render NAME_around.exr and NAME_ahead.exr, lat-long G-buffers from the camera and from ahead of it, and nothing else")
     parser.add_argument("--truth-only", action="store_true")
     parser.add_argument("--export-obj", action="store_true", help="write the scene's mesh, NAME.obj and NAME.mtl, and render nothing")

@@ -10,7 +10,6 @@ vec3 outside_light = vec3(0.0);
 // The share of a slice's sectors that meet a surface outside the frame.
 float closed_share(Centre o, Slice s) {
     uvec2 open = ~s.sectors.blocked;
-#ifdef SURROUND
     const float width = PI / float(CELLS);
     Exits exits = exits_of(o.P, o.V, s.lines);
     float from = s.n - 0.5 * PI, c = 0.0, closed = 0.0;
@@ -22,9 +21,6 @@ float closed_share(Centre o, Slice s) {
         c = next;
     }
     return closed;
-#else
-    return sector_share(open) - open_share(open, s.sectors.seen, params.openness);
-#endif
 }
 #endif
 

@@ -22,5 +22,12 @@
 #define PLANE_MASK 4     // 4 columns: 16 rows of 16 bits over the support: the picture does not show the plane to be absent there
 #define PLANE_COLUMNS 8
 
+// The lat-long grid of how open the outside is (src/passes/openness.h): columns, a power of 2; rows between the poles; numbers, in
+// vectors of four.
+#define OPENNESS_COLUMNS 8
+#define OPENNESS_ROWS 3
+#define OPENNESS_COUNT (2 + OPENNESS_COLUMNS * OPENNESS_ROWS)
+#define OPENNESS_VECTORS ((OPENNESS_COUNT + 3) / 4)
+
 #define SURROUND_WIDTH 512 // of the map about the eye (src/passes/surround.h)
 #define SURROUND_HEIGHT 256

@@ -143,9 +143,13 @@ Exits exits_of(vec3 P, vec3 V, Lines lines) {
 // Density of the slice's cosine weight over the angle t from V.
 float density(Side s, float t) { return abs(sin(t)) * max(cos(t) * s.cos_n + sin(t) * s.sin_n, 0.0); }
 
-// Where a cell of the slice, which begins at the angle `begin` from V, looks outside: anywhere in it, or a small opening would lie between
-// the looks of all pixels of a plane. The angle is drawn by the density, taken as linear on either side of V, where it has a kink.
+// Where a cell of the slice, which begins at the angle `begin` from V, looks outside. In a surround that is anywhere in it, or a small
+// opening would lie between the looks of all pixels of a plane. The angle is drawn by the density, taken as linear on either side of V,
+// where it has a kink.
 vec2 look_in(Side s, float begin, float width, int cell, float jitter) {
+#ifndef SURROUND
+    return vec2(cos(begin + 0.5 * width), sin(begin + 0.5 * width));
+#else
     float u = fract(jitter + 0.6180340 * float(cell + 1)), end = begin + width, first = density(s, begin), last = density(s, end);
     if (begin < 0.0 && end > 0.0) {
         float before = -begin * first, after = end * last;
@@ -159,6 +163,32 @@ vec2 look_in(Side s, float begin, float width, int cell, float jitter) {
     float part = abs(last - first) > 1e-3 * (first + last) ? (sqrt(mix(first * first, last * last, u)) - first) / (last - first) : u;
     float t = mix(begin, end, clamp(part, 0.0, 1.0));
     return vec2(cos(t), sin(t));
+#endif
+}
+
+// How open the outside is where nothing is known: linear between the numbers of a lat-long grid (src/passes/openness.h).
+vec3 upright(vec3 v) { // camera space
+    return vec3(dot(arc_block.upright_from_camera[0].xyz, v), dot(arc_block.upright_from_camera[1].xyz, v), dot(arc_block.upright_from_camera[2].xyz, v));
+}
+
+float stored_openness(int row, int column) {
+    int i = row == 0 ? 0 : row > OPENNESS_ROWS ? 1 : 2 + (row - 1) * OPENNESS_COLUMNS + (column & (OPENNESS_COLUMNS - 1));
+    return arc_block.openness[i >> 2][i & 3];
+}
+
+float unknown_openness(vec3 P, vec3 d) { // upright axes, d unit
+#ifdef SUNS
+    if (params.sun_openness >= 0.0) return params.sun_openness;
+#endif
+    vec3 wall = mix(arc_block.walls_low.xyz, arc_block.walls_high.xyz, greaterThan(d, vec3(0.0))) - P;
+    vec3 times = wall / mix(d, vec3(1e-20), lessThan(abs(d), vec3(1e-20)));
+    vec3 X = P + max(0.0, min(times.x, min(times.y, times.z))) * d;
+    vec3 c = X - 0.5 * (arc_block.walls_low.xyz + arc_block.walls_high.xyz);
+    d = normalize(c / max(arc_block.walls_high.xyz - arc_block.walls_low.xyz, vec3(1e-20)));
+    vec2 place = map_uv(d) * vec2(OPENNESS_COLUMNS, OPENNESS_ROWS + 1), low = floor(place), t = place - low;
+    int x = int(low.x), y = min(int(low.y), OPENNESS_ROWS);
+    return mix(mix(stored_openness(y, x), stored_openness(y, x + 1), t.x),
+               mix(stored_openness(y + 1, x), stored_openness(y + 1, x + 1), t.x), t.y);
 }
 
 // How open the outside is in the direction at.x V + at.y across: closed if one map shows a surface there, else as open as one shows.
@@ -172,5 +202,5 @@ float openness(vec3 V, vec3 across, vec2 at, Exits x) {
         open = o == 0.0 || open == 0.0 ? 0.0 : max(open, o);
     }
 #endif
-    return open >= 0.0 ? open : params.openness;
+    return open >= 0.0 ? open : unknown_openness(upright(x.P), upright(at.x * V + at.y * across));
 }

@@ -13,10 +13,13 @@ PARAMS(arc_params) {
     int exitant;
     float inverse_steps;
     int before;          // slices of earlier rounds
-    float openness;      // share of the unseen directions outside the frame that are open (outside.glsl); 1 all
     int views;           // maps of the surround
+    float sun_openness;  // share of unseen directions outside the frame that are open to suns; below 0: as of others
     int side;            // of the block of pixels that one of a smaller frame stands for (RECEIVERS)
     int unused_1, unused_2;
+    vec4 openness[OPENNESS_VECTORS]; // of others, by direction (outside.glsl)
+    vec4 walls_low, walls_high; // of its box, upright axes, the eye at the origin
+    vec4 upright_from_camera[3]; // rows
     vec4 sun_direction[MAX_SUNS]; // camera space, unit; w half its width, radians
     vec4 sun_light[MAX_SUNS];     // rgb: irradiance over pi of a surface that faces the sun
     vec4 box_low, box_high; // of all surfaces, map axes, the eye at the origin

@@ -92,6 +92,8 @@ typedef struct options {
     const char *bounce; // none, or a name of passes/method.h; NULL = the method's own where it has one
     double bounce_strength;
     int vpl_count;
+    const char *beauty_env; // that lit the beauty
+    double beauty_env_rotate, beauty_env_scale;
     path_list also;      // further G-buffers
     const char *proxies; // spheres the camera does not see; may be a pattern
 

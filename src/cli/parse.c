@@ -29,6 +29,7 @@ void options_defaults(options *o)
         .vpl_count = 512,
         .sh_bands = 2,
         .env_scale = 1,
+        .beauty_env_scale = 1,
         .env_lod = -1,
         .mode = MODE_RADIANCE,
         .amount = 1,

@@ -43,6 +43,8 @@ void arc_set_grid(arc_params *p, int slices, int steps)
     p->inverse_steps = 1.0f / (float)steps;
 }
 
+void arc_put(float to[4], vec3 a, double w) { to[0] = (float)a.x, to[1] = (float)a.y, to[2] = (float)a.z, to[3] = (float)w; }
+
 arc_params arc_params_of_grid(const pass_context *c, int slices, int steps)
 {
     const pass_settings *s = &c->set;
@@ -54,9 +56,14 @@ arc_params arc_params_of_grid(const pass_context *c, int slices, int steps)
         .planes = c->planes.count,
         .level = (float)s->env_level,
         .strength = (float)s->bounce_strength,
-        .openness = (float)s->outside,
+        .sun_openness = (float)s->outside.suns,
         .views = c->view_count,
     };
+    for (int i = 0; i < OPENNESS_COUNT; i++) p.openness[i / 4][i % 4] = (float)s->outside.share[i];
+    arc_put(p.walls_low, v3_sub(s->outside.low, s->upright_eye), 0);
+    arc_put(p.walls_high, v3_sub(s->outside.high, s->upright_eye), 0);
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) p.upright_from_camera[i][k] = (float)s->upright_from_camera.m[i][k];
     if (s->thickness_fixed) p.thin = p.thickness;
     arc_set_grid(&p, slices, steps);
     p.tolerance =
@@ -84,8 +91,6 @@ arc_params arc_unlimited_params_of(const pass_context *c)
 // ---- planes
 
 _Static_assert(PLANE_COLUMNS == PLANE_MASK + PLANE_CELLS / 4 && MAX_SUNS == SUNS_MAX, "shaders/include/constants.glsl");
-
-void arc_put(float to[4], vec3 a, double w) { to[0] = (float)a.x, to[1] = (float)a.y, to[2] = (float)a.z, to[3] = (float)w; }
 
 static void put_plane(float row[PLANE_COLUMNS][4], const plane *p, bool uneven)
 {
@@ -115,7 +120,7 @@ static bool make_planes(pass_context *c, error *e)
 
 bool arc_has_surround(const pass_context *c) { return c->view_count > 0; }
 
-bool arc_closes_outside(const pass_context *c) { return c->set.outside < 1.0 || arc_has_surround(c); }
+bool arc_closes_outside(const pass_context *c) { return !openness_is_whole(&c->set.outside) || arc_has_surround(c); }
 
 static bool make_surround(pass_context *c, error *e)
 {

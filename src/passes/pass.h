@@ -15,6 +15,7 @@
 #include "light/proxies.h"
 #include "light/sun.h"
 #include "passes/images.h"
+#include "passes/openness.h"
 #include "passes/planes.h"
 #include "passes/variants.h"
 
@@ -55,10 +56,12 @@ typedef struct pass_settings {
     double env_level; // < 0: by solid angle
     double bounce_strength;
     int vpl_count;
-    mat3 world_from_camera; // to the world that the environment is fixed to
+    mat3 world_from_camera;   // to the world that the environment is fixed to
+    mat3 upright_from_camera; // to the axes of `outside` (passes/openness.h),
+    vec3 upright_eye;         // and the eye there
     int seed;
-    double outside; // share of the unseen directions outside the frame that are open to the environment; 1 all
-    bool planes;    // let large planes stand in for what the camera does not see
+    openness outside;
+    bool planes; // let large planes stand in for what the camera does not see
     estimate_size size;
     double amount;
     const char *mesh;          // raytrace: the scene's surfaces, an OBJ file; borrowed

@@ -294,7 +294,8 @@ static bool measure_shot(job *j, int frame, error *e)
     if (ok && j->o->radius_unit == RADIUS_AUTO)
         log_info(j->log, "radius: %g scene units for the whole sequence, from %s", j->shot.radius, in->list[0]);
     if (ok && j->shot.roof >= 0.0)
-        log_info(j->log, "outside: %g open for the whole sequence, by the roof in %s", j->shot.outside, in->list[0]);
+        log_info(j->log, "outside: %g open for the whole sequence, by the roof in %s", openness_mean(&j->shot.outside),
+                 in->list[0]);
     j->is_shot = ok;
     free(in);
     return ok || err_set(e, ERR_USAGE, j->o->inputs[0], NULL, "the path of frame %d is too long", frame);
@@ -334,7 +335,7 @@ static bool measure_lowest(job *j, const frame_list *existing, error *e)
 static bool fix_shot(job *j, error *e)
 {
     frame_list existing = {0};
-    if (j->o->radius_unit != RADIUS_AUTO && !settings_asks_outside(j->o)) return true;
+    if (j->o->radius_unit != RADIUS_AUTO && !plan_asks_outside(j->o)) return true;
     if (j->o->radius_from != INT_MIN) return measure_shot(j, j->o->radius_from, e);
     if (!pattern_scan(j->o->inputs[0], &existing, e)) return false;
     if (existing.count == 0) return err_set(e, ERR_INPUT, j->o->inputs[0], NULL, "no file fits this pattern");

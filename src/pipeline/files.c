@@ -60,6 +60,7 @@ bool run_files_list(const options *o, run_files *out, error *e)
     if (!proxies_are_framed(o, &framed, e)) return false;
     const run_file others[] = {
         {.what = "--env", .path = o->env, .decides = true, .once = true},
+        {.what = "--beauty-env", .path = o->beauty_env, .decides = true, .once = true},
         {.what = "--camera", .path = o->camera_file, .decides = true},
         {.what = "--proxies", .path = o->proxies, .decides = true, .framed = framed},
         {.what = "--mesh", .path = o->mesh, .decides = true, .once = true},

@@ -1,8 +1,10 @@
 #include "pipeline/filter.h"
 #include "base/clock.h"
 
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/mem.h"
 #include "gbuffer/half_size.h"
 #include "pipeline/read_back.h"
 
@@ -153,6 +155,43 @@ static void take_counts(frame_result *r, const pass_context *c)
     r->tile_size = c->tiles.size, r->tiles = c->tiles.columns * c->tiles.rows, r->tiles_occupied = c->tiles.occupied_count;
 }
 
+bool filter_estimate(job *j, const gbuffer *gb, job_light *light, const plan *p, const pass_settings *set,
+                     const plane_set *planes, float *radiance, float *indirect, error *e)
+{
+    pass_context c = {.g = &j->g,
+                      .log = NULL,
+                      .threads = j->threads,
+                      .stop = j->stop,
+                      .set = *set,
+                      .gb = gb,
+                      .env = &light->env,
+                      .environment = light->image,
+                      .views = j->views,
+                      .view_count = j->view_count,
+                      .sunless = &light->sunless,
+                      .planes = *planes,
+                      .trace = &j->trace};
+    if (!pass_begin(&c, e)) return false;
+    step_list list;
+    bool ok = !steps_split_suns(p) || pass_split_suns(&c, e);
+    if (ok) {
+        steps_make(&(step_facts){p, set, steps_given(gb), false, c.sunless->map.id != 0, false}, &list);
+        ok = run_steps(&c, gb, &list, e) && gpu_finish(&j->g, "the passes", e);
+    }
+    size_t n = (size_t)gb->width * (size_t)gb->height;
+    float *rgba = ok ? mem_pixels(4 * n, sizeof *rgba, e) : NULL;
+    ok = rgba;
+    float *const out[] = {radiance, indirect};
+    for (int l = 0; ok && l < 2; l++) {
+        if (!out[l]) continue;
+        gpu_image_download(&j->g, &c.image[l ? IMAGE_INDIRECT : IMAGE_RADIANCE], rgba);
+        for (size_t i = 0; i < 3 * n; i++) out[l][i] = rgba[i / 3 * 4 + i % 3];
+    }
+    free(rgba);
+    pass_end(&c);
+    return ok;
+}
+
 bool filter_begin(job *j, frame_result *r, error *e)
 {
     if (!filter_prepare(j, r, e)) return false;
@@ -172,12 +211,13 @@ bool filter_begin(job *j, frame_result *r, error *e)
         .want_diffuse = p->layers & 1u << LAYER_DIFFUSE,
         .gb = &gb,
         .lone = &r->lone,
-        .env = j->env_loaded ? &j->env : NULL,
-        .environment = j->env_image,
+        .env = j->light.loaded ? &j->light.env : NULL,
+        .environment = j->light.image,
         .views = j->views,
         .view_count = j->view_count,
         .proxies = &r->proxies,
-        .sunless = &j->sunless,
+        .sunless = &j->light.sunless,
+        .planes = r->planes,
         .trace = &j->trace,
     };
     for (int k = 0; k < SH_IMAGES; k++) c.relight_sh[k] = r->relight_sh[k];

@@ -33,6 +33,6 @@ bool frame_run_files(job *j, const char *const *inputs, int count, const char *o
 void frame_free(frame_result *result);
 
 // What a sequence must have the same everywhere, measured on one frame of it.
-bool frame_measure_shot(const job *j, const char *const *inputs, int count, shot_facts *shot, error *e);
+bool frame_measure_shot(job *j, const char *const *inputs, int count, shot_facts *shot, error *e);
 
 #endif

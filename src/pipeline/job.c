@@ -23,16 +23,21 @@ bool job_open_device(job *j, error *e)
 
 bool job_stopped(const job *j) { return j->stop && *j->stop; }
 
+static void forget(job_light *l)
+{
+    gpu_image_free(&l->image);
+    gpu_image_free(&l->sunless.map);
+    if (l->loaded) environment_free(&l->env);
+    *l = (job_light){0};
+}
+
 void job_forget_light(job *j)
 {
-    gpu_image_free(&j->env_image);
-    gpu_image_free(&j->sunless.map);
+    forget(&j->light);
+    forget(&j->beauty_light);
     trace_scene_close(&j->trace);
-    if (j->env_loaded) environment_free(&j->env);
-    j->env_loaded = false;
     for (int i = 0; i < j->view_count; i++) world_view_free(&j->views[i]);
     j->view_count = 0;
-    j->sunless = (pass_sunless){0};
     j->trace = (trace_scene){0};
 }
 

@@ -13,10 +13,18 @@
 
 // What frames have in common. 0 and -1: each frame has its own.
 typedef struct shot_facts {
-    double radius;  // of the occlusion, scene units
-    double outside; // how open the unseen outside is
-    double roof;    // the share of the picture that is a roof; -1: not known
+    double radius; // of the occlusion, scene units
+    openness outside;
+    double roof; // the share of the picture that is a roof; -1: not known
 } shot_facts;
+
+// An environment, prepared with the first frame that needs it: its default up axis is that of the frame's renderer.
+typedef struct job_light {
+    bool loaded;
+    environment env;
+    gpu_image image;
+    pass_sunless sunless;
+} job_light;
 
 // What lives for all frames of a run: options, context, environment.
 typedef struct job {
@@ -24,11 +32,9 @@ typedef struct job {
     log_t *log;
     const run_files *files; // borrowed: all that is read and written. NULL where only a frame is asked for
     int threads;
-    gpu g;           // opened when first needed
-    bool env_loaded; // the environment needs the first frame's renderer for its default up axis
-    environment env;
-    gpu_image env_image;
-    pass_sunless sunless;
+    gpu g;                            // opened when first needed
+    job_light light;                  // --env
+    job_light beauty_light;           // --beauty-env
     trace_scene trace;                // --mesh
     world_view views[OPT_MOST_PATHS]; // --also
     int view_count;

@@ -119,6 +119,22 @@ static bool check_adaptive(const method *m, const options *o, error *e)
     return true;
 }
 
+bool plan_asks_outside(const options *o)
+{
+    return o->outside < 0.0 && (o->env || o->beauty_env) && (!o->method || strcmp(o->method, method_default()->name) == 0);
+}
+
+// Why the picture's own light says nothing of the outside; NULL: it does.
+static const char *why_not_fitted(const options *o, const plan *p, const inputs *in)
+{
+    if (o->outside >= 0.0) return "--outside says how open the outside is";
+    if (!plan_asks_outside(o)) return "only --method arc asks what lies outside the frame";
+    if (!p->want_radiance) return "no layer needs light";
+    if (!in->diffuse_direct && !(in->beauty && in->albedo))
+        return "the file has neither direct diffuse light nor a beauty with albedo";
+    return NULL;
+}
+
 bool plan_make(const options *o, const exrio_file *file, const resolution *r, plan *p, log_t *log, error *e)
 {
     const char *name = o->from_sh ? "s3ho" : o->method ? o->method : method_default()->name;
@@ -160,6 +176,9 @@ bool plan_make(const options *o, const exrio_file *file, const resolution *r, pl
     if (p->specular) p->need |= NEED_MATERIAL;
     if (in.emission && relit) p->need |= NEED_EMISSION;
     if (in.diffuse_direct && p->composite && !p->relight) p->need |= NEED_DIFFUSE_LIGHT;
+    const char *unused = why_not_fitted(o, p, &in);
+    if (!unused) p->need_to_fit = NEED_ALBEDO | (in.diffuse_direct ? NEED_DIFFUSE_LIGHT : NEED_BEAUTY | NEED_EMISSION);
+    if (unused && o->beauty_env) log_warn(log, "beauty-env", "--beauty-env is not used: %s", unused);
     p->why_no_bounce = !in.albedo && p->relight ? "no albedo" : "no layer needs it";
     p->why_no_specular = !in.roughness ? "no roughness" : !in.env ? "no environment" : "no layer needs it";
     return true;

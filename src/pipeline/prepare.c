@@ -12,15 +12,16 @@ static void describe(const job *j, const frame_result *r, shot_facts shot)
              r->set.thickness);
     if (shot.roof >= 0.0)
         log_info(j->log, "outside: %g of the unseen directions are open, as %.3g %% of the picture is a roof (--outside)",
-                 shot.outside, 100.0 * shot.roof);
-    else if (settings_asks_outside(j->o) && r->plan.light)
+                 openness_mean(&shot.outside), 100.0 * shot.roof);
+    else if (plan_asks_outside(j->o) && r->plan.light)
         log_info(j->log, "outside: open, as nobody knows which way is up (--outside)");
 }
 
-static bool check_world(const job *j, const frame_result *r, error *e)
+bool frame_check_world(const job *j, const frame_result *r, error *e)
 {
     bool camera_frame = j->o->env_frame == FRAME_CAMERA;
-    if (!j->o->env || !r->plan.light || camera_frame || r->gb.camera.has_rotation || r->gb.valid == 0) return true;
+    if (!(j->o->env || r->plan.need_to_fit) || !r->plan.light || camera_frame || r->gb.camera.has_rotation || r->gb.valid == 0)
+        return true;
     return err_set(e, ERR_INPUT, r->file->path, NULL,
                    "--env needs world directions, and this frame's camera rotation is unknown; use --env-frame camera, --camera "
                    "FILE or, if the normals are in world space, --normal-space world");
@@ -46,7 +47,7 @@ static bool prepare_view(const job *j, frame_result *r, shot_facts shot, error *
     if (r->gb.valid == 0) log_warn(j->log, "empty", "%s: no pixel has a surface; the layers are neutral", r->file->path);
     r->set = settings_of(j, r, shot);
     describe(j, r, shot);
-    return frame_check_scale(r, e) && check_world(j, r, e) && load_proxies(j, r, e) && filter_prepare(j, r, e);
+    return frame_check_scale(r, e) && frame_check_world(j, r, e) && load_proxies(j, r, e) && filter_prepare(j, r, e);
 }
 
 bool frame_prepare(const job *j, frame_result *r, error *e)

@@ -7,4 +7,7 @@
 // All views of the frame. Nothing if it is done. result->frame must be set.
 bool frame_prepare(const job *j, frame_result *result, error *e);
 
+// An environment that stands still in the world needs the camera's rotation: ERR_INPUT without.
+bool frame_check_world(const job *j, const frame_result *r, error *e);
+
 #endif

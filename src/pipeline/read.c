@@ -1,4 +1,5 @@
 #include "pipeline/read.h"
+#include "pipeline/outside_fit.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -46,6 +47,7 @@ static bool resolve_view(const job *j, frame_result *r, error *e)
         !plan_make(j->o, r->file, &r->resolution, &r->plan, j->log, e) ||
         !output_check_names(j->o, r->file, r->view, &r->plan, e))
         return false;
+    if (j->is_shot) r->plan.need_to_fit = 0; // the shot's outside is known
     want_channels(j, r->file, &r->resolution, &r->plan);
     return !r->plan.from_sh || relight_want(j->o, r->file, r->view, e);
 }
@@ -77,7 +79,7 @@ static bool check_doubt(const job *j, const frame_result *r, error *e)
 
 static bool build_view(const job *j, frame_result *r, error *e)
 {
-    gbuffer_options g = {.need = r->plan.need,
+    gbuffer_options g = {.need = r->plan.need | r->plan.need_to_fit,
                          .camera_file = j->o->camera_file,
                          .fov = j->o->fov,
                          .ortho = j->o->ortho,
@@ -89,7 +91,7 @@ static bool build_view(const job *j, frame_result *r, error *e)
                          .depth_far = j->o->depth_range[1]};
     if (r->view) log_info(j->log, "view %s:", r->view);
     return gbuffer_build(r->file, &r->resolution, &g, &r->gb, j->log, e) && check_doubt(j, r, e) && convert_albedo(j, r, e) &&
-           (!r->plan.from_sh || relight_load(j->o, r->file, r->view, &r->gb, r->relight_sh, e));
+           (!r->plan.from_sh || relight_load(j->o, r->file, r->view, &r->gb, r->relight_sh, e)) && outside_fit_gather(j, r, e);
 }
 
 // The first view is *r itself; the others are appended.

@@ -31,8 +31,9 @@ static bool put_settings(digester *d, const job *j, error *e)
     if (!options_digest(j->o, d, e)) return false;
     digest_put_text(d, ssdo_decides);
     if (folder && !put_shader_folder(d, folder, e)) return false;
-    snprintf(shot, sizeof shot, "%a %a", (double)(float)j->shot.radius, (double)(float)j->shot.outside);
+    snprintf(shot, sizeof shot, "%a", (double)(float)j->shot.radius);
     digest_put_text(d, shot);
+    digest_put(d, &j->shot.outside, sizeof j->shot.outside);
     return true;
 }
 

@@ -93,11 +93,11 @@ static json_object *uploads_of(const job *j, const frame_result *r)
     json_object *list = json_object_new_array();
     for (int i = 0; i < r->upload_count; i++) json_object_array_add(list, upload_of(r->uploads[i].name, r->uploads[i].bytes));
     size_t texels = 0;
-    for (int i = 0; i < j->env_image.levels; i++) {
-        size_t w = (size_t)j->env_image.width >> i, h = (size_t)j->env_image.height >> i;
+    for (int i = 0; i < j->light.image.levels; i++) {
+        size_t w = (size_t)j->light.image.width >> i, h = (size_t)j->light.image.height >> i;
         texels += (w ? w : 1) * (h ? h : 1);
     }
-    if (j->env_image.id) json_object_array_add(list, upload_of("environment", texels * 4 * sizeof(float)));
+    if (j->light.image.id) json_object_array_add(list, upload_of("environment", texels * 4 * sizeof(float)));
     return list;
 }
 
@@ -210,7 +210,8 @@ static json_object *report_of(const job *j, const frame_result *r, const char *o
     if (r->set.target_error > 0.0) json_put(o, "rounds", report_rounds(r));
     json_put_number(o, "radius", r->set.radius);
     json_put_number(o, "thickness", r->set.thickness);
-    json_put_number(o, "outside", r->set.outside);
+    json_put_number(o, "outside", openness_mean(&r->set.outside));
+    if (r->unexplained > 0.0) json_put_number(o, "outside_unexplained", r->unexplained);
     json_put_number(o, "valid_share", pixels > 0 ? (double)r->gb.valid / pixels : 0.0);
     json_put_number(o, "off_frame_share", report_off_frame_share(r));
     json_put_number(o, "off_ray_share", r->gb.valid ? (double)r->gb.off_ray / (double)r->gb.valid : 0.0);

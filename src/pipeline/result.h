@@ -47,7 +47,10 @@ typedef struct frame_result {
     bool prepared;                  // by filter_prepare
     bool uncovered;                 // the coverage says nothing that the depth does not
     gbuffer half_size;              // the frame at half its size, until the passes have run
-    pixel_list lone;                // its pixels that `half_size` does not show, as long as that
+    gbuffer lit;                    // the frame at a small size, `beauty` its own light before albedo: for outside_fit.h
+    bool lit_direct;                // that light is direct light only
+    double unexplained;             // of it, by the outside that was fitted to it; 0: none was
+    pixel_list lone;                // pixels of the frame that `half_size` does not show, as long as that
     bool second_part;               // our layers went into a part of their own
     const char *view;               // the stereo view this is, the file's string; NULL without views
     struct frame_result *next_view; // owned; shares the file

@@ -60,28 +60,34 @@ static mat3 world_from_camera(const job *j, const frame_result *r)
 
 // ---- the outside
 
+static mat3 upright_from_world(const job *j, const frame_result *r)
+{
+    static const mat3 up_y = {{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}};
+    return settings_up_z(j, r) ? m3_identity() : up_y;
+}
+
+static vec3 upright_eye(const job *j, const frame_result *r)
+{
+    bool known = r->gb.camera.has_world && j->o->env_frame != FRAME_CAMERA;
+    return known ? m3_apply(upright_from_world(j, r), r->gb.camera.origin) : v3(0, 0, 0);
+}
+
 // Below the first share of roof the picture is taken to be under the sky, above the second one to be covered. Between them the
 // outside closes by degrees, so that nothing jumps.
 static const double LEAST_ROOF = 0.01, MOST_ROOF = 0.03;
-
-bool settings_asks_outside(const options *o)
-{
-    return o->outside < 0.0 && o->env && (!o->method || strcmp(o->method, method_default()->name) == 0);
-}
 
 // Which way is up needs the camera's rotation, or an environment that moves with the camera.
 static bool knows_up(const job *j, const frame_result *r) { return r->gb.camera.has_rotation || j->o->env_frame == FRAME_CAMERA; }
 
 static shot_facts outside_of(const job *j, const frame_result *r)
 {
-    shot_facts f = {.outside = j->o->outside, .roof = -1.0};
-    if (f.outside >= 0.0) return f;
-    f.outside = 1.0;
-    if (!settings_asks_outside(j->o) || !knows_up(j, r)) return f;
+    shot_facts f = {.outside = openness_even(j->o->outside < 0.0 ? 1.0 : j->o->outside), .roof = -1.0};
+    if (j->o->outside >= 0.0) return f;
+    if (!plan_asks_outside(j->o) || !knows_up(j, r)) return f;
     vec3 up = settings_up_z(j, r) ? v3(0, 0, 1) : v3(0, 1, 0);
     f.roof = openings_roof(&r->gb, m3_apply(m3_transpose(world_from_camera(j, r)), up));
     double t = fmin(fmax((f.roof - LEAST_ROOF) / (MOST_ROOF - LEAST_ROOF), 0.0), 1.0);
-    f.outside = 1.0 + (OUTSIDE_COVERED - 1.0) * t * t * (3.0 - 2.0 * t);
+    f.outside = openness_even(1.0 + (OUTSIDE_COVERED - 1.0) * t * t * (3.0 - 2.0 * t));
     return f;
 }
 
@@ -152,6 +158,8 @@ pass_settings settings_of(const job *j, const frame_result *r, shot_facts shot)
         .bounce_strength = o->bounce_strength,
         .vpl_count = o->vpl_count,
         .world_from_camera = world_from_camera(j, r),
+        .upright_from_camera = m3_mul(upright_from_world(j, r), world_from_camera(j, r)),
+        .upright_eye = upright_eye(j, r),
         .mesh = o->mesh,
         .trace = o->trace,
         .mesh_axes = o->mesh_axes,

@@ -10,8 +10,6 @@
 shot_facts settings_shot(const job *j, const frame_result *r);
 // The same of a sequence: on this frame of it.
 shot_facts settings_measure_shot(const job *j, const frame_result *r);
-// Whether --outside auto has anything to decide: no method but arc asks, and only for light.
-bool settings_asks_outside(const options *o);
 // Whether z is the environment's up axis: as asked for, else the renderer's.
 bool settings_up_z(const job *j, const frame_result *r);
 // The depth in the middle of the surfaces, 1 where there are none: where a length in pixels and one in the scene are compared.

@@ -104,20 +104,20 @@ bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned laye
     double share = row->middle ? (double)b->middle->gb.width / b->gb.width : 1.0;
     r->proxies = row->proxies ? b->proxies : (proxy_set){0};
     if (row->middle) b = b->middle;
-    r->job.env = b->env;
-    r->job.env_image = b->env_image;
-    r->job.env_loaded = true;
-    r->job.sunless = *b->sunless;
+    r->job.light.env = b->env;
+    r->job.light.image = b->env_image;
+    r->job.light.loaded = true;
+    r->job.light.sunless = *b->sunless;
     r->options.bounce = bounce_of(row);
     r->options.report = "timed"; // a report makes the passes wait and take their times
     bool ok = (row->m->source != SEES_MESH || open_mesh(r, b, row, set, e)) && (!row->relit || store_sh(r, b, row, &set, e)) &&
               rig_run(r, &b->gb, row->m, &set, layers, out, e);
     forget_sh(r);
-    r->job.env_loaded = false;
-    r->job.env_image = (gpu_image){0};
+    r->job.light.loaded = false;
+    r->job.light.image = (gpu_image){0};
     out->proxies = (proxy_set){0}; // the scene's
-    *b->sunless = r->job.sunless;
-    r->job.sunless = (pass_sunless){0};
+    *b->sunless = r->job.light.sunless;
+    r->job.light.sunless = (pass_sunless){0};
     if (!ok) return false;
     take_time(out, "irradiance", share, direct);
     take_time(out, "", share, all);

@@ -1,5 +1,6 @@
 #!/bin/sh
-# What lies outside the frame: a roof closes it, one decision for a sequence; further G-buffers are read or refused in words.
+# What lies outside the frame: a roof closes it, the picture's own light says how far, one decision for a sequence; further G-buffers are
+# read or refused in words.
 set -e
 die() { echo "FAILED: $*"; exit 1; }
 here=$(pwd)
@@ -7,11 +8,30 @@ dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 cd "$dir"
 covered=$here/samples/covered sky="--env $here/samples/sky_sun.exr" fast="--samples 8 --layers radiance --keep none"
-says() { "$SSDO" -v "$@" 2>&1 >/dev/null | sed -n 's/.*outside: \([0-9.]*\) of.*/\1/p'; }
+says() { "$SSDO" -v "$@" 2>&1 >/dev/null | sed -n 's/.*outside: \([0-9.]*\) of.*roof.*/\1/p'; }
+fits() { "$SSDO" -v "$@" 2>&1 >/dev/null | sed -n 's/.*outside: \([0-9.]*\) of.*fitted.*/\1/p'; }
 
 [ "$(says "$covered/room.exr" -o o.exr $sky $fast)" = 0.08 ] || die "a room with its ceiling in view is not closed"
 [ "$(says "$here/samples/box.exr" -o o.exr $sky $fast)" = 1 ] || die "an open box whose lid is seen to end is closed"
 [ "$(says "$here/samples/horizon.exr" -o o.exr $sky $fast)" = 1 ] || die "a landscape is closed"
+
+# The picture's own light: of a room with a roof; of one without, which is dark for this sky; not of an open box.
+corner=$covered/corner.exr soft="--env $here/samples/sky_soft.exr"
+[ -n "$(fits "$covered/room.exr" -o o.exr $sky $fast)" ] || die "a room's own light tells nothing"
+[ -n "$(fits "$corner" -o o.exr $soft $fast)" ] || die "a dark corner's own light tells nothing"
+"$SSDO" "$corner" -o o.exr $soft $fast 2>&1 | grep -q 'warning: .*corner.exr: its own light is 0.0' || die "no warning that the outside was closed"
+[ -z "$(fits "$here/samples/box.exr" -o o.exr $soft $fast)" ] || die "an open box is fitted unasked"
+[ -n "$(fits "$here/samples/box.exr" -o o.exr $sky $fast --beauty-env "$here/samples/sky_soft.exr")" ] || die "--beauty-env is not used"
+"$SSDO" "$corner" -o o.exr $soft $fast --outside open --beauty-env "$here/samples/sky_soft.exr" 2>&1 |
+    grep -q 'beauty-env is not used: --outside' || die "--beauty-env is dropped without a word"
+# A beauty with albedo says much the same as direct light.
+oiiotool -i:ch=ViewLayer.Combined.R,ViewLayer.Combined.G,ViewLayer.Combined.B,ViewLayer.DiffCol.R,ViewLayer.DiffCol.G,ViewLayer.DiffCol.B,\
+ViewLayer.Position.X,ViewLayer.Position.Y,ViewLayer.Position.Z,ViewLayer.Normal.X,ViewLayer.Normal.Y,ViewLayer.Normal.Z "$corner" -o beauty.exr
+for f in "$corner" beauty.exr; do
+    "$SSDO" -q "$f" -o o.exr $soft --beauty-env "$here/samples/sky_soft.exr" --radius 0.5 --samples 16 --layers radiance --keep none
+    oiiotool o.exr --stats | sed -n 's/.*Stats Avg: \([0-9.]*\).*/\1/p'
+done >means
+awk 'NR == 1 { a = $1 } NR == 2 { exit !($1 > 0.6 * a && $1 < 1.5 * a && a < 0.2) }' means || die "light by DiffDir and by beauty: $(cat means)"
 
 # One decision for a sequence, by its lowest frame, whichever frames a task makes.
 cp "$covered/room.exr" f.0001.exr
@@ -38,4 +58,4 @@ oiiotool "$covered/room.exr" --ch ViewLayer.Depth.Z,ViewLayer.Normal.X,ViewLayer
 refused 3 'flat.exr.*position' "$covered/room.exr" --also flat.exr
 refused 3 'nowhere.exr' "$covered/room.exr" --also nowhere.exr
 refused 3 'also is in world space' "$here/samples/ortho.exr" --also "$covered/room.exr"
-echo "figure: 3 places told apart, 1 decision for 2 tasks, 3 further G-buffers refused"
+echo "figure: 3 places told apart, 3 of 4 fitted to their light, 1 decision for 2 tasks, 3 further G-buffers refused"

@@ -53,14 +53,14 @@ static void light_with(rig *r, const sky *s)
     for (size_t i = 0; i < 3 * n; i++) rgb[i] = s->value;
     for (size_t i = 0; i < s->spots; i++)
         for (int k = 0; k < 3; k++) rgb[3 * ((n / 3 + 2 * i) % n) + (size_t)k] = s->spot;
-    environment_free(&r->job.env);
-    gpu_image_free(&r->job.env_image);
-    gpu_image_free(&r->job.sunless.map);
-    r->job.sunless = (pass_sunless){0};
-    must(environment_prepare(rgb, s->width, s->height, &(env_options){.path = s->name, .up_z = true, .scale = 1.0}, &r->job.env,
-                             &r->log, &e),
+    environment_free(&r->job.light.env);
+    gpu_image_free(&r->job.light.image);
+    gpu_image_free(&r->job.light.sunless.map);
+    r->job.light.sunless = (pass_sunless){0};
+    must(environment_prepare(rgb, s->width, s->height, &(env_options){.path = s->name, .up_z = true, .scale = 1.0},
+                             &r->job.light.env, &r->log, &e),
          &e);
-    must(pass_upload_environment(&r->job.g, &r->job.env, &r->job.env_image, &e), &e);
+    must(pass_upload_environment(&r->job.g, &r->job.light.env, &r->job.light.image, &e), &e);
     free(rgb);
 }
 

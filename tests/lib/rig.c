@@ -11,9 +11,9 @@ bool rig_open(rig *r, const env_options *env, error *e)
     job_open(&r->job, &r->options, &r->log);
     if (!job_open_device(&r->job, e)) return false;
     if (!env) return true;
-    if (!environment_load(env, &r->job.env, &r->log, e)) return false;
-    r->job.env_loaded = true;
-    return pass_upload_environment(&r->job.g, &r->job.env, &r->job.env_image, e);
+    if (!environment_load(env, &r->job.light.env, &r->log, e)) return false;
+    r->job.light.loaded = true;
+    return pass_upload_environment(&r->job.g, &r->job.light.env, &r->job.light.image, e);
 }
 
 void rig_close(rig *r)
@@ -26,7 +26,7 @@ pass_settings rig_settings(const method *m, double radius)
 {
     return (pass_settings){.radius = radius,
                            .thickness = INFINITY,
-                           .outside = 1.0,
+                           .outside = openness_even(1.0),
                            .samples = m->samples,
                            .scale = 1.0,
                            .contrast = 1.0,
@@ -45,10 +45,12 @@ static const bounce_kind *estimator_of(const method *m, const char *name)
 bool rig_run(rig *r, const gbuffer *gb, const method *m, const pass_settings *set, unsigned layers, frame_result *out, error *e)
 {
     bool bounce = layers & 1u << LAYER_INDIRECT;
-    bool light = r->job.env_loaded && (bounce || layers & 1u << LAYER_RADIANCE);
+    bool light = r->job.light.loaded && (bounce || layers & 1u << LAYER_RADIANCE);
     *out = (frame_result){.gb = *gb, .set = *set, .proxies = r->proxies};
     for (int k = 0; k < SH_IMAGES; k++) out->relight_sh[k] = r->relight_sh[k];
     out->set.world_from_camera = gb->camera.has_world ? gb->camera.world_from_camera : m3_identity();
+    out->set.upright_from_camera = out->set.world_from_camera;
+    out->set.upright_eye = gb->camera.has_world ? gb->camera.origin : v3(0, 0, 0);
     out->plan = (plan){.method = m,
                        .layers = layers,
                        .want_radiance = light && method_makes(m, MAKES_LIGHT),

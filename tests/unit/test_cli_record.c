@@ -77,7 +77,7 @@ static const char *const everything =
     "--vpl-count 99 --env "
     "sky.exr --env-up y --env-rotate "
     "-12.5 "
-    "--env-scale 3 --env-colorspace sRGB --ocio config.ocio "
+    "--env-scale 3 --beauty-env lit.exr --beauty-env-rotate 12 --beauty-env-scale 0.5 --env-colorspace sRGB --ocio config.ocio "
     "--env-frame camera --env-lod 2.5 --mode visibility --amount 0 --multiply all --depthmask-strength 2 --position 'View "
     "Layer.Position' --normal 'it'\\''s N' "
     "--depth Z "

@@ -303,7 +303,8 @@ static void relit_composite(rig *r, gbuffer *gb, bool all, double amount, float 
     set.multiply_all = all;
     set.amount = amount;
     set.world_from_camera = m3_identity();
-    pass_context c = {.g = &r->job.g, .log = &r->log, .set = set, .gb = gb, .env = &r->job.env, .environment = r->job.env_image};
+    pass_context c = {
+        .g = &r->job.g, .log = &r->log, .set = set, .gb = gb, .env = &r->job.light.env, .environment = r->job.light.image};
     must(pass_begin(&c, &e), &e);
     must(method_find("hemisphere")->run(&c, &e) && pass_irradiance(&c, &e) && pass_specular(&c, &e) && pass_composite(&c, &e),
          &e);

@@ -91,10 +91,11 @@ static void constant_map_gives_its_radiance(void **state)
     rig r;
     error e = {0};
     must(rig_open(&r, NULL, &e), &e);
-    must(environment_prepare(rgb, 32, 16, &(env_options){.path = "constant", .up_z = true, .scale = 1.0}, &r.job.env, &r.log, &e),
+    must(environment_prepare(rgb, 32, 16, &(env_options){.path = "constant", .up_z = true, .scale = 1.0}, &r.job.light.env,
+                             &r.log, &e),
          &e);
-    r.job.env_loaded = true;
-    must(pass_upload_environment(&r.job.g, &r.job.env, &r.job.env_image, &e), &e);
+    r.job.light.loaded = true;
+    must(pass_upload_environment(&r.job.g, &r.job.light.env, &r.job.light.image, &e), &e);
     scene s = {0};
     scene_tilted_plane(&s, 40.0, 5.0);
     view v = plane_view(0);

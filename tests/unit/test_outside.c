@@ -14,41 +14,12 @@
 #include "base/mem.h"
 #include "gbuffer/world_view.h"
 #include "must.h"
+#include "outside_rooms.h"
 #include "passes/openings.h"
 #include "passes/surround.h"
 #include "rig.h"
 #include "scene_picture.h"
 #include "truth.h"
-
-static const vec3 grey = {0.5, 0.5, 0.5};
-
-static void quad(scene *s, double x, double y, double z, vec3 a, vec3 b) { scene_add_quad(s, v3(x, y, z), a, b, grey); }
-
-// A room 4 x 5 x 2.5, its far wall with a window from x = 1 to 3 and z = 1 to 2. The eye stands inside. Without `back` the wall
-// behind the eye is missing, and without `lid` the ceiling.
-static scene room(bool back, bool lid)
-{
-    scene s = {.eye = v3(2, 0.3, 1.5), .target = v3(2, 5, 1.3), .radius = 0.5};
-    vec3 x = v3(1, 0, 0), y = v3(0, 1, 0), z = v3(0, 0, 1);
-    quad(&s, 0, 0, 0, v3_scale(x, 4), v3_scale(y, 5));
-    if (lid) quad(&s, 0, 0, 2.5, v3_scale(x, 4), v3_scale(y, 5));
-    quad(&s, 0, 0, 0, v3_scale(y, 5), v3_scale(z, 2.5));
-    quad(&s, 4, 0, 0, v3_scale(y, 5), v3_scale(z, 2.5));
-    if (back) quad(&s, 0, 0, 0, v3_scale(x, 4), v3_scale(z, 2.5));
-    quad(&s, 0, 5, 0, v3_scale(x, 4), v3_scale(z, 1));
-    quad(&s, 0, 5, 2, v3_scale(x, 4), v3_scale(z, 0.5));
-    quad(&s, 0, 5, 1, v3_scale(x, 1), v3_scale(z, 1));
-    quad(&s, 3, 5, 1, v3_scale(x, 1), v3_scale(z, 1));
-    return s;
-}
-
-static void look(const scene *s, int width, int height, double fov, gbuffer *gb)
-{
-    error e = {0};
-    view v = view_perspective(width, height, fov, 1.0);
-    view_scene(&v, s);
-    must(scene_gbuffer(s, &v, gb, &e), &e);
-}
 
 static double roof_of(const scene *s, double fov)
 {
@@ -164,7 +135,7 @@ static light light_of(const scene *s, double outside, const world_view *more)
     must(rig_open(&r, &(env_options){.scale = 1.0}, &e), &e);
     look(s, W, H, 60.0, &gb);
     pass_settings set = rig_settings(method_find("arc"), 0.5);
-    set.thickness = 0.1, set.planes = true, set.blur = 4, set.outside = outside;
+    set.thickness = 0.1, set.planes = true, set.blur = 4, set.outside = openness_even(outside);
     if (more) r.job.views[r.job.view_count++] = *more;
     must(rig_run(&r, &gb, method_find("arc"), &set, 1 << LAYER_RADIANCE, &out, &e), &e);
     r.job.view_count = 0; // borrowed
@@ -282,17 +253,17 @@ static void a_closed_place_is_black(void **state)
     for (int i = 0; i < 3 * ENV_W * ENV_H; i++) sky[i] = 0.2f;
     for (int k = 0; k < 3; k++) sky[3 * (30 * ENV_W + 40) + k] = 1000.0f;
     must(rig_open(&r, NULL, &e), &e);
-    must(
-        environment_prepare(sky, ENV_W, ENV_H, &(env_options){.path = "sun", .up_z = true, .scale = 1.0}, &r.job.env, &r.log, &e),
-        &e);
-    r.job.env_loaded = true;
-    must(pass_upload_environment(&r.job.g, &r.job.env, &r.job.env_image, &e), &e);
+    must(environment_prepare(sky, ENV_W, ENV_H, &(env_options){.path = "sun", .up_z = true, .scale = 1.0}, &r.job.light.env,
+                             &r.log, &e),
+         &e);
+    r.job.light.loaded = true;
+    must(pass_upload_environment(&r.job.g, &r.job.light.env, &r.job.light.image, &e), &e);
     scene_add_plane(&s, v3(0, 0, 0), v3(0, 0, 1), grey);
     scene_add_box(&s, v3(0, 0, 0.4), v3(0.4, 0.3, 0.4), 20.0, grey);
     look(&s, W, H, 30.0, &gb);
     assert_int_equal(gb.valid, W * H);
     pass_settings set = rig_settings(method_find("arc"), 0.5);
-    set.thickness = 0.1, set.planes = true, set.blur = 4, set.outside = 0.0;
+    set.thickness = 0.1, set.planes = true, set.blur = 4, set.outside = openness_even(0.0);
     must(rig_run(&r, &gb, method_find("arc"), &set, 1 << LAYER_RADIANCE | 1 << LAYER_INDIRECT, &out, &e), &e);
     for (int i = 0; i < 3 * W * H; i++)
         assert_true(out.layers[LAYER_RADIANCE][i] == 0.0f && out.layers[LAYER_INDIRECT][i] == 0.0f);

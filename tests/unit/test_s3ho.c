@@ -250,7 +250,7 @@ static double half_bound(const whole *x, int i, int channel)
         for (int c = l * l; c < (l + 1) * (l + 1); c++)
             o += pow((double)(c < 9 ? x->r.layers[LAYER_SH_0 + c / 3][3 * i + c % 3] : x->r.layers[LAYER_SH_3][7 * i + c - 9]),
                      2.0);
-        sum += sqrt(o) * band_norm((const double(*)[3])x->j.env.sh, l, channel);
+        sum += sqrt(o) * band_norm((const double(*)[3])x->j.light.env.sh, l, channel);
     }
     return sum / M_PI / 2048.0 + 1e-5;
 }

@@ -24,11 +24,11 @@ static void light_with(rig *r, int x, int y)
     assert_non_null(rgb);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) rgb[i] = 1e-3f;
     for (int k = 0; k < 3; k++) rgb[3 * (y * WIDTH + x) + k] = 1000.0f;
-    must(environment_prepare(rgb, WIDTH, HEIGHT, &(env_options){.path = "sun", .up_z = true, .scale = 1.0}, &r->job.env, &r->log,
-                             &e),
+    must(environment_prepare(rgb, WIDTH, HEIGHT, &(env_options){.path = "sun", .up_z = true, .scale = 1.0}, &r->job.light.env,
+                             &r->log, &e),
          &e);
-    r->job.env_loaded = true;
-    must(pass_upload_environment(&r->job.g, &r->job.env, &r->job.env_image, &e), &e);
+    r->job.light.loaded = true;
+    must(pass_upload_environment(&r->job.g, &r->job.light.env, &r->job.light.image, &e), &e);
     free(rgb);
 }
 

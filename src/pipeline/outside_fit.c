@@ -1,0 +1,352 @@
+#include "pipeline/outside_fit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/sort.h"
+#include "pipeline/filter.h"
+#include "pipeline/settings.h"
+
+enum {
+    MOST_PIXELS = 1 << 14, // of the small frame
+    SAMPLES = 16,          // a pixel: that there are many pixels makes up for the noise
+    SUNS = OPENNESS_COUNT,
+    BOUNCE,
+    UNKNOWNS,
+    CLOSED = UNKNOWNS, // the column of what comes with all closed
+};
+
+// Where the albedo is darker, the quotient of beauty and albedo says more about the noise than about the light.
+static const float LEAST_ALBEDO = 0.05f;
+
+// ---- what is seen
+
+// r g b of the diffuse light before albedo and 1, or zeros where it is not known.
+static void light_of_pixel(const gbuffer *g, size_t i, float out[4])
+{
+    memset(out, 0, 4 * sizeof *out);
+    if (!(g->depth[i] > 0.0f) || (g->coverage && g->coverage[i] < 1.0f)) return;
+    const float *a = g->albedo ? g->albedo + 4 * i : NULL, *d = g->diffuse_direct ? g->diffuse_direct + 4 * i : NULL;
+    for (int k = 0; k < 3; k++) {
+        if (!d && !(a[k] >= LEAST_ALBEDO)) return;
+        float light = d ? d[k] : (g->beauty[4 * i + (size_t)k] - (g->emission ? g->emission[4 * i + (size_t)k] : 0.0f)) / a[k];
+        out[k] = light > 0.0f ? light : 0.0f;
+    }
+    out[3] = 1.0f;
+}
+
+static void drop(float **array, bool needed)
+{
+    if (needed) return;
+    free(*array);
+    *array = NULL;
+}
+
+bool outside_fit_gather(const job *j, frame_result *r, error *e)
+{
+    gbuffer *g = &r->gb, lit = *g, next;
+    if (!r->plan.need_to_fit) return true;
+    size_t pixels = (size_t)g->width * (size_t)g->height;
+    bool seen = g->diffuse_direct || (g->beauty && g->albedo), ok = true;
+    float *light = NULL;
+    if (seen && g->valid > 0) {
+        light = mem_pixels(4 * pixels, sizeof *light, e);
+        ok = light != NULL;
+        for (size_t i = 0; ok && i < pixels; i++) light_of_pixel(g, i, light + 4 * i);
+        lit.beauty = light;
+        for (bool first = true; ok && (first || (size_t)lit.width * (size_t)lit.height > MOST_PIXELS); first = false) {
+            ok = gbuffer_halve(&lit, j->threads, &next, e);
+            if (!first) gbuffer_free(&lit);
+            lit = next;
+        }
+        if (ok) r->lit = lit, r->lit_direct = g->diffuse_direct;
+        for (size_t i = 0; ok && i < (size_t)lit.width * (size_t)lit.height; i++) lit.normal[4 * i + 3] = 0.0f;
+        free(light);
+    }
+    drop(&g->beauty, r->plan.need & (NEED_BEAUTY | NEED_BACKGROUND));
+    drop(&g->albedo, r->plan.need & NEED_ALBEDO);
+    drop(&g->emission, r->plan.need & NEED_EMISSION);
+    drop(&g->diffuse_direct, r->plan.need & NEED_DIFFUSE_LIGHT);
+    return ok;
+}
+
+// ---- what would be seen
+
+typedef struct model {
+    job *j;
+    const frame_result *r;
+    job_light *light;
+    plan plan;
+    pass_settings set;
+    openness walls;
+    size_t pixels;
+    float *column[CLOSED + 1]; // 3 a pixel
+} model;
+
+static bool estimate(const model *m, const openness *o, float *radiance, float *indirect, error *e)
+{
+    pass_settings set = m->set;
+    plan p = m->plan;
+    set.outside = *o;
+    set.outside.low = m->walls.low, set.outside.high = m->walls.high;
+    p.bounce = indirect != NULL;
+    p.layers |= indirect ? 1u << LAYER_INDIRECT : 0u;
+    return filter_estimate(m->j, &m->r->lit, m->light, &p, &set, &m->r->planes, radiance, indirect, e);
+}
+
+// The box about what is seen, but for the outermost pixels.
+static bool find_walls(const model *m, openness *o, error *e)
+{
+    const gbuffer *g = &m->r->lit;
+    float *place = mem_pixels(m->pixels, sizeof *place, e);
+    if (!place) return false;
+    for (int axis = 0; axis < 3; axis++) {
+        size_t n = 0;
+        for (int y = 0; y < g->height; y++)
+            for (int x = 0; x < g->width; x++) {
+                vec3 p = v3_add(m->set.upright_eye, m3_apply(m->set.upright_from_camera, gbuffer_position(g, x, y)));
+                if (g->depth[(size_t)y * (size_t)g->width + (size_t)x] > 0.0f)
+                    place[n++] = (float)(axis == 0 ? p.x : axis == 1 ? p.y : p.z);
+            }
+        sort_floats(place, n);
+        double low = (double)place[n / 50], high = (double)place[n - 1 - n / 50];
+        *(axis == 0 ? &o->low.x : axis == 1 ? &o->low.y : &o->low.z) = low;
+        *(axis == 0 ? &o->high.x : axis == 1 ? &o->high.y : &o->high.z) = high;
+    }
+    free(place);
+    return true;
+}
+
+// All but the bounce's, which depends on the shares.
+static bool estimate_columns(model *m, error *e)
+{
+    for (int k = 0; k <= CLOSED; k++) {
+        openness o = openness_even(0.0);
+        o.suns = k == SUNS ? 1.0 : 0.0;
+        if (k < OPENNESS_COUNT) o.share[k] = 1.0;
+        if (!(m->column[k] = mem_zero(3 * m->pixels, sizeof(float), e))) return false;
+        if (k != BOUNCE && !estimate(m, &o, m->column[k], NULL, e)) return false;
+    }
+    for (int k = 0; k < BOUNCE; k++)
+        for (size_t i = 0; i < 3 * m->pixels; i++) m->column[k][i] -= m->column[CLOSED][i];
+    return true;
+}
+
+// ---- the shares
+
+typedef struct shares {
+    double x[UNKNOWNS];
+    double unexplained; // root mean square of what is left of the light, over that of the light
+} shares;
+
+typedef struct normal_equations {
+    double a[UNKNOWNS][UNKNOWNS], b[UNKNOWNS];
+} normal_equations;
+
+// Of a share: none to all. Of the bounce: that of one bounce, which a renderer may continue, and of which the picture shows a
+// part.
+static double least(int k) { return k == BOUNCE ? 0.5 : 0.0; }
+static double most(int k) { return k == BOUNCE ? 3.0 : 1.0; }
+
+// Least squares within bounds: each unknown in turn, until nothing moves. The matrix is positive definite, so this converges.
+static void solve(const normal_equations *n, double x[UNKNOWNS])
+{
+    for (int round = 0; round < 500; round++)
+        for (int i = 0; i < UNKNOWNS; i++) {
+            double sum = n->b[i];
+            for (int k = 0; k < UNKNOWNS; k++) sum -= k == i ? 0.0 : n->a[i][k] * x[k];
+            x[i] = fmin(most(i), fmax(least(i), sum / n->a[i][i]));
+        }
+}
+
+static double predicted(const model *m, const double x[UNKNOWNS], size_t i)
+{
+    double sum = (double)m->column[CLOSED][i];
+    for (int k = 0; k < UNKNOWNS; k++) sum += x[k] * (double)m->column[k][i];
+    return sum;
+}
+
+// Samples that are off by more than this many times the root mean square count by their distance, not by its square (Huber 1964).
+static const double OUTLIER = 3.0;
+// Weight of the prior: the light that it may cost, as a share of what the most important share explains.
+static const double STIFF = 0.001;
+
+static void add_sample(const model *m, normal_equations *n, size_t i, double y, double w)
+{
+    for (int k = 0; k < UNKNOWNS; k++) {
+        double wk = w * (double)m->column[k][i];
+        n->b[k] += wk * (y - (double)m->column[CLOSED][i]);
+        for (int l = 0; l < UNKNOWNS; l++) n->a[k][l] += wk * (double)m->column[l][i];
+    }
+}
+
+static void fit(const model *m, const double prior[UNKNOWNS], shares *s)
+{
+    enum { ROUNDS = 5 };
+    const gbuffer *lit = &m->r->lit;
+    double limit = INFINITY;
+    for (int round = 0; round <= ROUNDS; round++) {
+        normal_equations n = {0};
+        double squares = 0.0, all = 0.0, count = 0.0, strongest = 0.0;
+        for (size_t i = 0; i < 3 * m->pixels; i++) {
+            double weight = (double)lit->beauty[i / 3 * 4 + 3];
+            if (!(lit->depth[i / 3] > 0.0f) || weight <= 0.0) continue;
+            double y = (double)lit->beauty[i / 3 * 4 + i % 3] / weight, off = y - predicted(m, s->x, i);
+            squares += weight * off * off, all += weight * y * y, count += weight;
+            if (round < ROUNDS) add_sample(m, &n, i, y, weight * fmin(1.0, limit / fmax(fabs(off), 1e-30)));
+        }
+        s->unexplained = all > 0.0 ? sqrt(squares / all) : 1.0;
+        if (round == ROUNDS) break;
+        limit = OUTLIER * sqrt(squares / fmax(count, 1.0));
+        for (int k = 0; k < UNKNOWNS; k++) strongest = fmax(strongest, n.a[k][k]);
+        for (int k = 0; k < UNKNOWNS; k++)
+            n.a[k][k] += STIFF * strongest + 1e-30, n.b[k] += (STIFF * strongest + 1e-30) * prior[k];
+        solve(&n, s->x);
+    }
+}
+
+static openness openness_of(const model *m, const double x[UNKNOWNS])
+{
+    openness o = {.suns = x[SUNS], .low = m->walls.low, .high = m->walls.high};
+    memcpy(o.share, x, sizeof o.share);
+    return o;
+}
+
+// A beauty holds the light that bounces too. It depends on the shares, so each time round it is that of the last ones.
+static bool fit_with_bounce(model *m, const double prior[UNKNOWNS], shares *s, error *e)
+{
+    enum { ROUNDS = 4 };
+    float *radiance = mem_pixels(3 * m->pixels, sizeof *radiance, e);
+    bool ok = radiance;
+    for (int round = 0; ok && round < ROUNDS; round++) {
+        const openness o = openness_of(m, s->x);
+        ok = estimate(m, &o, radiance, m->column[BOUNCE], e);
+        if (ok) fit(m, prior, s);
+    }
+    free(radiance);
+    return ok;
+}
+
+// ---- whether it is asked, and believed
+
+// What is left of the picture's light may have at most this root mean square, over that of the light: what a black picture leaves
+// is 1.
+static const double MOST_LEFT = 0.9;
+// Nobody said that the environment lit the picture, and the picture shows no roof. Then its light must be explained well, and be
+// far below what the open sky would give: below the second of these shares the outside is taken to be as fitted, above the first
+// one to be open.
+static const double MOST_LEFT_UNASKED = 0.5, MOST_LIGHT = 0.5, SURE_LIGHT = 0.25;
+
+// Whether the frame shows where it ends: some background, beyond a crack or two.
+static bool shows_background(const gbuffer *g) { return (double)g->valid < 0.999 * (double)g->width * (double)g->height; }
+
+// The picture's light over that with all open.
+static bool compare_light(const model *m, double *share, error *e)
+{
+    const openness open = openness_even(1.0);
+    const gbuffer *lit = &m->r->lit;
+    double seen = 0.0, all = 0.0;
+    float *light = mem_pixels(3 * m->pixels, sizeof *light, e);
+    bool ok = light && estimate(m, &open, light, NULL, e);
+    for (size_t i = 0; ok && i < 3 * m->pixels; i++) {
+        double weight = (double)lit->beauty[i / 3 * 4 + 3];
+        if (!(lit->depth[i / 3] > 0.0f)) continue;
+        seen += (double)lit->beauty[i / 3 * 4 + i % 3];
+        all += weight * (double)light[i];
+    }
+    free(light);
+    *share = all > 0.0 ? seen / all : 1.0;
+    return ok;
+}
+
+// light: the picture's over that with all open. Where no single direction is seen to matter, that is how open it is taken to be,
+// if the prior is not less.
+static bool fit_shares(model *m, const openness *prior, double light, shares *s, error *e)
+{
+    double before[UNKNOWNS];
+    for (int k = 0; k < UNKNOWNS; k++) before[k] = fmin(openness_mean(prior), light);
+    before[BOUNCE] = 1.0;
+    memcpy(s->x, before, sizeof before);
+    bool ok = estimate_columns(m, e);
+    if (ok && m->r->lit_direct) fit(m, before, s);
+    if (ok && !m->r->lit_direct) ok = fit_with_bounce(m, before, s, e);
+    for (int k = 0; k <= CLOSED; k++) free(m->column[k]);
+    return ok;
+}
+
+static void say(job *j, const frame_result *r, const openness *o, double unexplained)
+{
+    log_info(
+        j->log,
+        "outside: %.2g of the unseen directions are open, fitted to the picture's %s light, of which %.2g is left unexplained",
+        openness_mean(o), r->lit_direct ? "direct" : "diffuse", unexplained);
+    for (int row = 0; row <= OPENNESS_ROWS + 1; row++) {
+        char text[128] = "";
+        bool pole = row == 0 || row == OPENNESS_ROWS + 1;
+        for (int i = 0; i < (pole ? 1 : OPENNESS_COLUMNS); i++)
+            snprintf(text + strlen(text), sizeof text - strlen(text), " %.2f",
+                     o->share[pole ? row > 0 : 2 + (row - 1) * OPENNESS_COLUMNS + i]);
+        log_info(j->log, "outside: %3d degrees from the zenith:%s", 180 * row / (OPENNESS_ROWS + 1), text);
+    }
+}
+
+static model model_of(job *j, const frame_result *r, job_light *light)
+{
+    model m = {.j = j, .r = r, .light = light, .set = r->set, .pixels = (size_t)r->lit.width * (size_t)r->lit.height};
+    m.set.size = SIZE_FULL;
+    m.set.samples = m.set.samples < SAMPLES ? m.set.samples : SAMPLES;
+    m.set.blur = (m.set.blur * r->lit.width + r->gb.width - 1) / r->gb.width;
+    m.plan = (plan){.method = r->plan.method,
+                    .estimator = r->plan.method->bounce,
+                    .layers = 1u << LAYER_RADIANCE,
+                    .light = true,
+                    .relight = true,
+                    .want_radiance = true,
+                    .blur = r->plan.blur};
+    return m;
+}
+
+bool outside_fit(job *j, frame_result *r, job_light *light, bool told, openness *out, error *e)
+{
+    const openness prior = *out;
+    const char *file = r->file ? r->file->path : "the picture";
+    double share;
+    shares s;
+    if (!r->lit.depth || r->lit.valid == 0) return true;
+    model m = model_of(j, r, light);
+    if (m.set.planes && !r->planes.found && !planes_find(&r->gb, &r->planes, e)) return false;
+    if (!find_walls(&m, &m.walls, e)) return false;
+    bool unasked = !told && openness_is_whole(&prior);
+    if (unasked && shows_background(&r->gb)) return true;
+    if (!compare_light(&m, &share, e)) return false;
+    if (unasked && share >= MOST_LIGHT) return true;
+    if (!fit_shares(&m, &prior, share, &s, e)) return false;
+    if (s.unexplained > (unasked ? MOST_LEFT_UNASKED : MOST_LEFT)) {
+        if (told)
+            log_warn(
+                j->log, "beauty-env",
+                "%s: --beauty-env does not explain the picture's light (%.2g of it is left); lamps or another environment light "
+                "it, and the outside is as without the option",
+                file, s.unexplained);
+        return true;
+    }
+    *out = openness_of(&m, s.x);
+    r->unexplained = s.unexplained;
+    if (light != &j->light) out->suns = -1.0;
+    if (unasked) {
+        double t = fmin(1.0, fmax(0.0, (MOST_LIGHT - share) / (MOST_LIGHT - SURE_LIGHT)));
+        t *= t * (3.0 - 2.0 * t);
+        for (int i = 0; i < OPENNESS_COUNT; i++) out->share[i] = 1.0 + t * (out->share[i] - 1.0);
+        out->suns = out->suns < 0.0 ? out->suns : 1.0 + t * (out->suns - 1.0);
+        log_warn(j->log, "dark",
+                 "%s: its own light is %.2g of what --env gives with the outside open; so the outside is closed as that light "
+                 "tells. If "
+                 "--env is not what lit it, name that with --beauty-env, or choose --outside open",
+                 file, share);
+    }
+    say(j, r, out, s.unexplained);
+    return true;
+}

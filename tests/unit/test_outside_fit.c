@@ -1,0 +1,212 @@
+// How open the outside is, learned from the picture's own light.
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/mem.h"
+#include "must.h"
+#include "outside_rooms.h"
+#include "pipeline/outside_fit.h"
+#include "rig.h"
+#include "truth.h"
+
+enum { W = 96, H = 54, PIXELS = W * H, ENV_W = 64, ENV_H = 32 };
+
+// The room seen from the window: no opening is in the picture.
+static scene room_from_its_window(void)
+{
+    scene s = room(true, true);
+    s.eye = v3(2, 4.6, 1.4), s.target = v3(1.8, 0, 1.1);
+    return s;
+}
+
+// Skies of the upper half: even, or brighter towards a side.
+static void paint(float *rgb, double angle, double contrast)
+{
+    for (int y = 0; y < ENV_H; y++)
+        for (int x = 0; x < ENV_W; x++) {
+            double around = 2.0 * M_PI * (0.5 - (x + 0.5) / ENV_W), down = M_PI * (y + 0.5) / ENV_H;
+            double side = sin(down) * cos(around - angle), sky = 1.0 + contrast * side + 0.3 * cos(down);
+            for (int k = 0; k < 3; k++) rgb[3 * (y * ENV_W + x) + k] = (float)(sky * (k == 2 ? 1.2 : 1.0));
+        }
+}
+
+static void light_by(rig *r, double angle, double contrast)
+{
+    static float rgb[3 * ENV_W * ENV_H];
+    error e = {0};
+    paint(rgb, angle, contrast);
+    job_forget_light(&r->job);
+    must(environment_prepare(rgb, ENV_W, ENV_H, &(env_options){.path = "sky", .up_z = true, .scale = 1.0}, &r->job.light.env,
+                             &r->log, &e),
+         &e);
+    r->job.light.loaded = true;
+    must(pass_upload_environment(&r->job.g, &r->job.light.env, &r->job.light.image, &e), &e);
+}
+
+// The direct light of every pixel by rays, 4 floats a pixel.
+static float *truth_of(const scene *s, const gbuffer *gb, environment *env)
+{
+    tracer t = scene_tracer(s);
+    truth_options o = {.rays = 1024, .offset = 1e-4, .sky = truth_environment_sky, .sky_data = env};
+    float *out = calloc((size_t)4 * PIXELS, sizeof *out);
+    assert_non_null(out);
+    for (int i = 0; i < PIXELS; i++) {
+        const float *n = gb->normal + 4 * i;
+        if (gb->depth[i] == 0.0f) continue;
+        vec3 N = m3_apply(gb->camera.world_from_camera, v3((double)n[0], (double)n[1], (double)n[2]));
+        vec3 P = v3_add(gb->camera.origin, m3_apply(gb->camera.world_from_camera, gbuffer_position(gb, i % W, i / W)));
+        vec3 L = truth_radiance(&t, P, N, &o);
+        out[4 * i] = (float)L.x, out[4 * i + 1] = (float)L.y, out[4 * i + 2] = (float)L.z;
+    }
+    return out;
+}
+
+static pass_settings settings_for(const gbuffer *gb, double outside)
+{
+    pass_settings set = rig_settings(method_find("arc"), 0.5);
+    set.thickness = 0.1, set.planes = true, set.blur = 4, set.outside = openness_even(outside);
+    set.world_from_camera = set.upright_from_camera = gb->camera.world_from_camera;
+    set.upright_eye = gb->camera.origin;
+    return set;
+}
+
+// Fits the picture with this light of its own; whether the prior was left.
+static bool fit_to(rig *r, const gbuffer *gb, float *light, bool told, double prior, openness *out)
+{
+    error e = {0};
+    frame_result f = {.gb = *gb, .set = settings_for(gb, prior)};
+    f.gb.diffuse_direct = light;
+    f.plan = (plan){.method = method_find("arc"), .blur = true, .need = ~0u, .need_to_fit = NEED_DIFFUSE_LIGHT};
+    must(outside_fit_gather(&r->job, &f, &e), &e);
+    *out = f.set.outside;
+    must(outside_fit(&r->job, &f, &r->job.light, told, out, &e), &e);
+    gbuffer_free(&f.lit);
+    return memcmp(out, &f.set.outside, sizeof *out) != 0;
+}
+
+// Radiance against the truth: the difference over the truth's root mean square.
+static double error_of(rig *r, const gbuffer *gb, const openness *o, const float *truth)
+{
+    error e = {0};
+    frame_result out;
+    pass_settings set = settings_for(gb, 0.0);
+    set.outside = *o;
+    must(rig_run(r, gb, method_find("arc"), &set, 1 << LAYER_RADIANCE, &out, &e), &e);
+    double squares = 0.0, all = 0.0;
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        double t = (double)truth[i / 3 * 4 + i % 3], d = (double)out.layers[LAYER_RADIANCE][i] - t;
+        squares += d * d, all += t * t;
+    }
+    rig_free_result(&out);
+    return sqrt(squares / all);
+}
+
+// Learned under one sky, scored under that and under another one.
+static void light_tells_where_it_is_open(void **state)
+{
+    (void)state;
+    static rig r;
+    error e = {0};
+    gbuffer gb;
+    openness fitted, covered = openness_even(OUTSIDE_COVERED);
+    scene s = room_from_its_window();
+    double left[2], prior[2];
+    must(rig_open(&r, NULL, &e), &e);
+    look(&s, W, H, 60.0, &gb);
+    light_by(&r, 0.5, 0.6);
+    float *truth = truth_of(&s, &gb, &r.job.light.env);
+    assert_true(fit_to(&r, &gb, truth, true, OUTSIDE_COVERED, &fitted));
+    left[0] = error_of(&r, &gb, &fitted, truth), prior[0] = error_of(&r, &gb, &covered, truth);
+    free(truth);
+    light_by(&r, 3.0, 0.6);
+    truth = truth_of(&s, &gb, &r.job.light.env);
+    left[1] = error_of(&r, &gb, &fitted, truth), prior[1] = error_of(&r, &gb, &covered, truth);
+    printf("figure: room with its window behind the eye, learned from its light: radiance %.3f of the truth's rms, %.3f under "
+           "another "
+           "sky (%.2f and %.2f without)\n",
+           left[0], left[1], prior[0], prior[1]);
+    assert_true(left[0] < 0.35 && left[1] < 0.35);
+    assert_true(prior[0] > 2.0 * left[0]);
+    free(truth);
+    gbuffer_free(&gb);
+    rig_close(&r);
+}
+
+// Without a word on what lit it, a picture that is as bright as under an open sky stays open, one that is a tenth as bright and
+// shows no background is closed.
+static void the_unasked_decision(void **state)
+{
+    (void)state;
+    static rig r;
+    error e = {0};
+    gbuffer gb;
+    openness o;
+    scene s = room_from_its_window(), table = {.eye = v3(0.5, -3, 4), .target = v3(0, 0, 0.3), .radius = 0.5};
+    scene_add_plane(&table, v3(0, 0, 0), v3(0, 0, 1), grey);
+    scene_add_box(&table, v3(0, 0, 0.4), v3(0.4, 0.3, 0.4), 20.0, grey);
+    must(rig_open(&r, NULL, &e), &e);
+    light_by(&r, 0.5, 0.6);
+    look(&s, W, H, 60.0, &gb);
+    float *truth = truth_of(&s, &gb, &r.job.light.env);
+    assert_true(fit_to(&r, &gb, truth, false, 1.0, &o));
+    assert_true(openness_mean(&o) < 0.4);
+    free(truth);
+    gbuffer_free(&gb);
+    look(&table, W, H, 30.0, &gb);
+    assert_int_equal(gb.valid, PIXELS);
+    truth = truth_of(&table, &gb, &r.job.light.env);
+    assert_false(fit_to(&r, &gb, truth, false, 1.0, &o));
+    free(truth);
+    gbuffer_free(&gb);
+    rig_close(&r);
+}
+
+// Lamps that hang in the picture: no outside explains their pools of light, so the prior stays.
+static void lamps_explain_nothing(void **state)
+{
+    (void)state;
+    static rig r;
+    error e = {0};
+    gbuffer gb;
+    openness o;
+    scene s = room_from_its_window();
+    float *light = calloc((size_t)4 * PIXELS, sizeof *light);
+    assert_non_null(light);
+    must(rig_open(&r, NULL, &e), &e);
+    light_by(&r, 0.5, 0.6);
+    look(&s, W, H, 60.0, &gb);
+    for (int i = 0; i < PIXELS; i++) {
+        static const vec3 lamps[2] = {{1, 0.15, 1.2}, {3.85, 2.0, 0.6}};
+        const float *n = gb.normal + 4 * i;
+        vec3 N = m3_apply(gb.camera.world_from_camera, v3((double)n[0], (double)n[1], (double)n[2]));
+        vec3 P = v3_add(gb.camera.origin, m3_apply(gb.camera.world_from_camera, gbuffer_position(&gb, i % W, i / W)));
+        for (int k = 0; k < 2; k++) {
+            vec3 to = v3_sub(lamps[k], P);
+            double far = v3_length(to), facing = fmax(0.0, v3_dot(N, to) / far);
+            light[4 * i] += (float)(facing / (far * far)), light[4 * i + 1] += (float)(0.7 * facing / (far * far));
+        }
+    }
+    assert_false(fit_to(&r, &gb, light, true, OUTSIDE_COVERED, &o));
+    assert_false(fit_to(&r, &gb, light, false, 1.0, &o));
+    free(light);
+    gbuffer_free(&gb);
+    rig_close(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(light_tells_where_it_is_open),
+        cmocka_unit_test(the_unasked_decision),
+        cmocka_unit_test(lamps_explain_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
