@@ -5,8 +5,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
-// Makes one line of it, in place: bytes of control characters, a line's end among them, and bytes that are no UTF-8 become '?',
-// so that a name can neither split a line, nor forge one for a supervisor that reads them, nor command a terminal.
+// Makes one line of it, in place: control characters, line ends among them, and bytes that are no UTF-8 become '?'. So a name
+// cannot split a line, forge one for a supervisor that reads them, or command a terminal.
 void text_one_line(char *text);
 
 // fprintf of one line, made one by text_one_line whatever the arguments hold: line ends stand at the beginning and the end of the

@@ -21,11 +21,12 @@ void cache_store(const gpu *g, const char *source, GLuint program);
 // Removes the oldest programs where there are thousands: after a run that has stored some.
 void cache_tidy(void);
 
-// Mesa's cache of machine code, which a program's binary does not hold on llvmpipe. Mesa does not bind an entry to its key, so
-// the entries lie in a folder of ours under names that do, and each process has a folder of its own in which Mesa sees those that
-// hold (hard links). Before EGL starts, and before the first thread: the environment variables MESA_SHADER_CACHE_DIR and
-// MESA_DISK_CACHE_MULTI_FILE are set, or MESA_SHADER_CACHE_DISABLE where there is no folder or its disk is nearly full, because
-// Mesa would be ended by SIGBUS there. What the user has set stays and is the user's. Nothing is done where it is open already.
+// Opens Mesa's cache of machine code; on llvmpipe a program's binary does not hold that code. Mesa does not check whether an
+// entry belongs to its key. So the entries lie in a folder of ours, under names that say which key and content they have, and
+// each process has a folder of its own with hard links to those that are sound. To be called before EGL and before the first
+// thread start, for it sets the environment variables MESA_SHADER_CACHE_DIR and MESA_DISK_CACHE_MULTI_FILE. Where there is no
+// folder, or its disk is nearly full, it sets MESA_SHADER_CACHE_DISABLE instead, because Mesa would be ended by SIGBUS there. It
+// leaves alone what the user has set. A second call does nothing.
 void cache_open_mesa(void);
 
 // After EGL has ended: takes over what Mesa has added, and leaves the process's folder, empty, to the next process.

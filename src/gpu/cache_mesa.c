@@ -111,8 +111,8 @@ static void remove_if_abandoned(void *context, const char *folder, const char *n
 
 // --- the spare folders ---
 //
-// ext4 looks for a free inode beyond all that were freed in the last seconds, so that one run after the other which makes and
-// removes two hundred folders pays more for them than for a small frame.
+// ext4 does not reuse an inode in the seconds after it was freed, and looks for a free one beyond all of those. If every run made
+// and removed two hundred folders, they would cost it more than a small frame does.
 
 static void remove_within(void *context, const char *folder, const char *name)
 {

@@ -4,12 +4,12 @@
 
 #include "pipeline/result.h"
 
-// One cell a layer, two columns, a label over each, and a legend below: the occlusion radius, as a number and as a bar of the
-// length it has in the cells at the middle depth, the checkerboard that stands where there is no surface, the stereo view, and
-// the display and view that light went through. Each layer of light is exposed so that its 95th percentile is at 0.8 (its label
-// says by which factor), and sRGB-encoded; shares are shown as they are, directions and coefficients with 0 as grey. A composite
-// with alpha lies over the checkerboard, which is the same under every view. Large frames are reduced and small ones enlarged by
-// a whole number, so that a cell is 320 to 960 columns wide.
+// One cell a layer, two columns, a label over each, and a legend below. The legend shows the occlusion radius as a number and as
+// a bar, of the length that the radius has in the cells at the middle depth; the checkerboard that stands where there is no
+// surface; the stereo view; and the display and view that light went through. Each layer of light is exposed so that its 95th
+// percentile is at 0.8 (its label says by which factor), and sRGB-encoded; shares are shown as they are, directions and
+// coefficients with 0 as grey. A composite with alpha lies over the checkerboard, which is the same under every view. Large
+// frames are reduced and small ones enlarged by a whole number, so that a cell is 320 to 960 columns wide.
 //
 // With an OpenColorIO config (--ocio, $OCIO) light goes through its display and view (--display, --view) instead; without one,
 // light in the primaries of a chromaticities attribute is brought to sRGB's.

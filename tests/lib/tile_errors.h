@@ -1,8 +1,7 @@
 // The estimate of --error against the true error, tile by tile.
 //
-// The true error of the samples' noise and of what too few steps miss is the difference from the method's own limit, a mean of
-// runs with very many samples and no filter (reference A of the slice methods: what their assumptions err by is not the
-// sampler's).
+// The true error is the difference from the method's own limit, a mean of runs with very many samples and no filter. It holds the
+// samples' noise and what too few steps miss, and not what the method's assumptions get wrong.
 #ifndef SSDO_TESTS_TILE_ERRORS_H
 #define SSDO_TESTS_TILE_ERRORS_H
 

@@ -1,6 +1,6 @@
 // The limit of each method against its own brute-force reference: the mean signed difference over up to 4096 stratified pixels,
 // with samples enough that noise leaves a few 1e-5 of it. An error of 5 % in cosine, weight, thickness or measure moves that
-// mean by 5e-4 or more on at least one of the views (`make mutate` proves it), where a root mean square hides it in the noise.
+// mean by 5e-4 or more on at least one of the views (`make mutate` proves it). In a root mean square the noise would hide it.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
