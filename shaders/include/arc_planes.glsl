@@ -43,14 +43,31 @@ bool stands(int plane, vec3 X, vec2 here, bool beyond_frame, float margin) {
     return inside ? supported && behind : beyond_frame && max(abs(here.x), abs(here.y)) <= BELIEVED_PLANE;
 }
 
-void block_by_planes(inout Sectors sectors, Side s, vec3 V, vec3 across, float n, Lines lines, vec3 P, float place, float jitter) {
-    Border right = border_of(lines.right), left = border_of(lines.left);
+// The planes, as bits, that can block directions of a point: not those that it lies on, nor those out of reach. Found once for all its
+// slices, because a rasteriser on the CPU saves turns of a loop, not branches.
+uint planes_around(vec3 P) {
+    uint set = 0u;
     for (int i = 0; i < params.planes; i++) {
         vec4 equation = FETCH(planes_image, ivec2(PLANE_EQUATION, i));
-        vec4 u = FETCH(planes_image, ivec2(PLANE_U, i)), v = FETCH(planes_image, ivec2(PLANE_V, i));
-        float off = FETCH(planes_image, ivec2(PLANE_LIGHT, i)).w, margin = 2.0 * abs(off);
+        float off = FETCH(planes_image, ivec2(PLANE_LIGHT, i)).w, h = equation.w - dot(equation.xyz, P), height = abs(h);
         bool uneven = off < 0.0;
-        float least = margin * (uneven ? UNEVEN_LEAST : 1.0) * (is_orthographic() ? 1.0 : P.z);
+        float least = 2.0 * abs(off) * (uneven ? UNEVEN_LEAST : 1.0) * (is_orthographic() ? 1.0 : P.z);
+        bool blocks = height > least && !(uneven && h > 0.0);
+#ifdef LIMITED
+        blocks = blocks && height < params.radius;
+#endif
+        set |= blocks ? 1u << uint(i) : 0u;
+    }
+    return set;
+}
+
+void block_by_planes(inout Sectors sectors, Side s, vec3 V, vec3 across, float n, Lines lines, vec3 P, uint planes, float place, float jitter) {
+    Border right = border_of(lines.right), left = border_of(lines.left);
+    for (uint rest = planes; rest != 0u; rest &= rest - 1u) {
+        int i = findLSB(rest);
+        vec4 equation = FETCH(planes_image, ivec2(PLANE_EQUATION, i));
+        vec4 u = FETCH(planes_image, ivec2(PLANE_U, i)), v = FETCH(planes_image, ivec2(PLANE_V, i));
+        float margin = 2.0 * abs(FETCH(planes_image, ivec2(PLANE_LIGHT, i)).w);
         // Distance to the plane along direction t: height / (normal . (cos t, sin t)), least at t0.
         float h = equation.w - dot(equation.xyz, P), height = abs(h);
         vec2 normal = vec2(dot(equation.xyz, V), dot(equation.xyz, across)) * (h < 0.0 ? -1.0 : 1.0);
@@ -64,8 +81,7 @@ void block_by_planes(inout Sectors sectors, Side s, vec3 V, vec3 across, float n
         t0 -= t0 - n > PI ? 2.0 * PI : t0 - n < -PI ? -2.0 * PI : 0.0;
         float from = max(t0 - half_angle, n - 0.5 * PI), to = min(t0 + half_angle, n + 0.5 * PI);
         float width = (to - from) / float(CHORDS);
-        // A rasteriser on the CPU saves turns of a loop, not branches.
-        int chords = width > 0.0 && height > least && !(uneven && h > 0.0) ? CHORDS : 0;
+        int chords = width > 0.0 ? CHORDS : 0;
         bool goes_right = allows(right, equation, margin), goes_left = allows(left, equation, margin);
 #ifdef BOUNCE
         vec3 sent = h < 0.0 ? FETCH(planes_image, ivec2(PLANE_LIGHT, i)).rgb : vec3(0.0); // from the side that the camera sees

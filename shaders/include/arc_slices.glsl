@@ -25,6 +25,9 @@ struct Centre {
     mat3 around;     // two tangents of V, and V
     float eye_distance;
     float tangent;   // ball_tangent
+#ifdef PLANES
+    uint planes;     // planes_around
+#endif
     vec3 turn;       // the pixel's noise: for the angle of the slices, the places of the steps and of the sectors
 };
 
@@ -37,6 +40,9 @@ Centre centre_of(Receiver here, ivec2 p) {
     c.around = tangent_frame(c.V);
     c.eye_distance = length(c.P);
     c.tangent = ball_tangent(c.P);
+#ifdef PLANES
+    c.planes = planes_around(c.P);
+#endif
     c.turn = pixel_noise(p, params.seed);
     return c;
 }
@@ -73,7 +79,7 @@ Slice march_slice(Centre c, int i) {
         }
     }
 #ifdef PLANES
-    block_by_planes(s.sectors, s.side, c.V, s.across, s.n, s.lines, c.P, s.noise.x, s.noise.y);
+    block_by_planes(s.sectors, s.side, c.V, s.across, s.n, s.lines, c.P, c.planes, s.noise.x, s.noise.y);
 #endif
     return s;
 }
