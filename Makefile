@@ -87,6 +87,7 @@ help:
 	@echo 'make bench-error   --error: its estimate, and its time beside fixed budgets'
 	@echo 'make bench-paper   cost of ssdo'\''s light and bounce beside the paper, of s3ho beside hemisphere'
 	@echo 'make bench-sampling   error by the sequence that slices, steps and sectors draw from, and by the spacing of steps'
+	@echo 'make bench-motion  noise over a shot and on flat patches (bench-motion-readme: into tests/bench/RESULTS.md)'
 	@echo 'make bench-frame   cost of a whole frame beside copying its file (bench-frame-readme: into tests/bench/RESULTS.md)'
 	@echo 'make dist     an archive that runs where it is unpacked; make check-dist: in fresh Debian roots, as root'
 	@echo 'make dist-oldest OPENEXR=folder IMATH=folder   the same built in Debian 11, from sources of OpenEXR 3 and Imath, as root'
@@ -392,6 +393,14 @@ bench-frame: deps-bench
 	@$(MAKE) $(JOBS) --no-print-directory all $(BUILD)/tests/bench/make_input $(BUILD)/tests/bench/measure $(BUILD)/tests/bench/core_copy \
 	    $(BUILD)/tests/bench/own_copy $(BUILD)/bench-curve
 	@sh tests/bench/frame.sh $(BUILD) $(ROUNDS)
+
+# What noise does over a shot and on flat patches: BUILD/bench/motion.md.
+.PHONY: bench-motion bench-motion-readme
+bench-motion: deps-bench
+	@$(MAKE) $(JOBS) --no-print-directory all $(BUILD)/tests/bench/motion
+	@sh tests/bench/motion.sh $(BUILD) $(OPTIONS)
+bench-motion-readme:
+	@sh tests/bench/paste.sh $(BUILD)/bench/motion.md bench-motion tests/bench/RESULTS.md
 
 # Puts the last bench-frame's tables into tests/bench/RESULTS.md, between the marks.
 .PHONY: bench-frame-readme

@@ -33,12 +33,14 @@ typedef struct runner {
     pass_context *whole, small;
     const gbuffer *half_size;
     bool open; // small is
+    bool marches_for_light;
 } runner;
 
 static bool open_small(runner *r, error *e)
 {
     pass_settings set = r->whole->set;
-    set.blur = set.size == SIZE_LIGHT ? (3 * set.blur + 3) / 4 : (set.blur + 1) / 2; // as wide on the surface as at full size
+    // As wide on the surface as at full size; of a method that marches for light, half as wide again, for it takes fewer samples.
+    set.blur = r->marches_for_light ? (3 * set.blur + 3) / 4 : (set.blur + 1) / 2;
     r->small = pass_like(r->whole, r->half_size, &set);
     if (set.size == SIZE_LIGHT) r->small.whole = r->whole, r->small.whole_side = 2;
     r->open = pass_begin(&r->small, e);
@@ -83,9 +85,9 @@ static bool small_is_needed(const step_list *l, int after)
     return false;
 }
 
-static bool run_steps(pass_context *c, const gbuffer *half_size, const step_list *l, error *e)
+static bool run_steps(pass_context *c, const gbuffer *half_size, const step_list *l, bool marches_for_light, error *e)
 {
-    runner r = {.whole = c, .half_size = half_size};
+    runner r = {.whole = c, .half_size = half_size, .marches_for_light = marches_for_light};
     bool ok = true;
     for (int i = 0; ok && i < l->count; i++) {
         if (!l->steps[i].runs) continue;
@@ -222,7 +224,8 @@ bool filter_begin(job *j, frame_result *r, error *e)
     };
     for (int k = 0; k < SH_IMAGES; k++) c.relight_sh[k] = r->relight_sh[k];
     if (!pass_begin(&c, e)) return false;
-    bool ok = list_steps(j, &c, r, e) && run_steps(&c, &r->half_size, &r->steps, e) && gpu_finish(&j->g, "the passes", e);
+    bool ok = list_steps(j, &c, r, e) && run_steps(&c, &r->half_size, &r->steps, p->method->run_light != NULL, e) &&
+              gpu_finish(&j->g, "the passes", e);
     stopwatch_add(&t, &r->wall_ms[STAGE_PASSES], &r->cpu_ms[STAGE_PASSES]);
     ok = ok && !job_stopped(j) && read_back_begin(j, &c, r, e);
     stopwatch_add(&t, &r->wall_ms[STAGE_READ_BACK], &r->cpu_ms[STAGE_READ_BACK]);

@@ -47,7 +47,9 @@ static bool run_blur(pass_context *c, const plan_step *s, error *e)
     static const image_id colours[] = {IMAGE_RADIANCE, IMAGE_INDIRECT, IMAGE_BENT};
     gpu_image *colour = NULL;
     for (size_t i = 0; !colour && i < sizeof colours / sizeof *colours; i++) colour = if_written(c, s, colours[i]);
-    return pass_blur(c, c->set.blur, if_written(c, s, IMAGE_OCCLUSION), if_written(c, s, IMAGE_VISIBILITY), colour, e);
+    // At a smaller size there are fewer samples on a surface, and a bounce varies less along it than light does.
+    bool wider = s->size != STEP_WHOLE && s->writes & BIT(INDIRECT) && c->set.blur > 0;
+    return pass_blur(c, c->set.blur + wider, if_written(c, s, IMAGE_OCCLUSION), if_written(c, s, IMAGE_VISIBILITY), colour, e);
 }
 
 static bool run_tone(pass_context *c, const plan_step *s, error *e)

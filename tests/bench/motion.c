@@ -1,0 +1,191 @@
+// A shot of the test still life, the camera sliding past it: what the noise of the layers does in motion, and on flat patches.
+//
+//     motion write WIDTH HEIGHT DIR       the frames' G-buffers, DIR/in.1.exr ...
+//     motion score WIDTH HEIGHT DIR NAME  of DIR/NAME.1.exr ..., a line for each layer: its name, change, residual
+//
+// Change: surface points are followed by their positions. The scene and its light stand still and the layers do not depend on the
+// view, so in truth nothing at a point changes. What changes from frame to frame is the noise, and what the view shows otherwise:
+// the root mean square over points and frames; of light over its mean. Points that an edge passes are left out.
+// Residual: on windows of a frame that show one plane, the root mean square of what is left of the layer beside its best linear
+// fit, over the window's mean; root mean square over the windows.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "sample.h"
+#include "scene_picture.h"
+
+enum { FRAMES = 8, LAYERS = 3, WINDOW = 9 };
+static const double SLIDE = 1.3;          // pixels a frame at the middle of the scene, of a picture 480 pixels wide
+static const double SAME_SURFACE = 0.002; // relative distance of a followed point from its four pixels' plane
+static const struct {
+    const char *name, *letters;
+} layers[LAYERS] = {{"occlusion", "R"}, {"radiance", "RGB"}, {"indirect", "RGB"}};
+
+typedef struct shot {
+    scene scene;
+    view view[FRAMES];
+    picture picture[FRAMES];
+    float *values[FRAMES]; // of one layer, luminance
+} shot;
+
+static void set_cameras(shot *s, int width, int height)
+{
+    scene_clutter(&s->scene);
+    for (int f = 0; f < FRAMES; f++) {
+        view *v = &s->view[f];
+        *v = view_perspective(width, height, 50.0, 1.0);
+        view_scene(v, &s->scene);
+        double far = v3_length(v3_sub(s->scene.target, s->scene.eye)), pixel = far / v->camera.fx * width / 480.0;
+        const double(*m)[3] = (const double(*)[3])v->camera.world_from_camera.m;
+        v->camera.origin = v3_add(v->camera.origin, v3_scale(v3(m[0][0], m[1][0], m[2][0]), f * SLIDE * pixel));
+    }
+}
+
+static bool write_shot(shot *s, const char *dir, error *e)
+{
+    for (int f = 0; f < FRAMES; f++) {
+        char path[512];
+        snprintf(path, sizeof path, "%s/in.%d.exr", dir, f + 1);
+        if (!scene_write(&s->scene, &s->view[f], &(scene_exr_options){.convention = "plain"}, path, e)) return false;
+    }
+    return true;
+}
+
+// ---- change
+
+static vec3 triple(const float *p, size_t i) { return v3((double)p[3 * i], (double)p[3 * i + 1], (double)p[3 * i + 2]); }
+
+// The layer of a frame at a world point with a normal; NaN where the frame does not show it whole.
+static double value_at(const shot *s, int f, vec3 p, vec3 n)
+{
+    const picture *g = &s->picture[f];
+    double x, y, z, sum = 0.0;
+    if (!view_project(&s->view[f], p, &x, &y, &z)) return (double)NAN;
+    x -= 0.5, y -= 0.5;
+    if (!(x >= 0.0 && y >= 0.0 && x < g->width - 1 && y < g->height - 1)) return (double)NAN;
+    double fx = x - floor(x), fy = y - floor(y);
+    for (int k = 0; k < 4; k++) {
+        size_t i = (size_t)((int)y + (k >> 1)) * (size_t)g->width + (size_t)((int)x + (k & 1));
+        if (!g->valid[i] || v3_dot(triple(g->normal, i), n) < 0.99 ||
+            fabs(v3_dot(n, v3_sub(triple(g->position, i), p))) > SAME_SURFACE * z)
+            return (double)NAN;
+        sum += (k & 1 ? fx : 1.0 - fx) * (k >> 1 ? fy : 1.0 - fy) * (double)s->values[f][i];
+    }
+    return sum;
+}
+
+// Points are the pixels of the middle frame.
+static double change_of(const shot *s, bool relative)
+{
+    const picture *g = &s->picture[FRAMES / 2];
+    double squares = 0.0, mean = 0.0, count = 0.0, points = 0.0;
+    for (size_t i = 0; i < (size_t)g->width * (size_t)g->height; i++) {
+        if (!g->valid[i]) continue;
+        double last = (double)NAN;
+        for (int f = 0; f < FRAMES; f++) {
+            double now = value_at(s, f, triple(g->position, i), triple(g->normal, i)), d = now - last;
+            if (!isnan(now)) mean += now, points += 1.0;
+            if (!isnan(d)) squares += d * d, count += 1.0;
+            last = now;
+        }
+    }
+    return sqrt(squares / count) / (relative ? mean / points : 1.0);
+}
+
+// ---- residual
+
+static bool is_flat(const picture *g, int x, int y)
+{
+    size_t middle = (size_t)(y + WINDOW / 2) * (size_t)g->width + (size_t)(x + WINDOW / 2);
+    if (!g->valid[middle]) return false;
+    vec3 n = triple(g->normal, middle), p = triple(g->position, middle);
+    for (int v = y; v < y + WINDOW; v++)
+        for (int u = x; u < x + WINDOW; u++) {
+            size_t i = (size_t)v * (size_t)g->width + (size_t)u;
+            if (!g->valid[i] || v3_dot(triple(g->normal, i), n) < 0.9999 ||
+                fabs(v3_dot(n, v3_sub(triple(g->position, i), p))) > 1e-4 * (double)g->depth[i])
+                return false;
+        }
+    return true;
+}
+
+// Squared residual of a window beside its best linear fit, over its squared mean.
+static double window_residual(const float *values, int width, int x, int y)
+{
+    double sum = 0.0, along = 0.0, down = 0.0, squares = 0.0;
+    const double n = WINDOW * WINDOW, moment = n * (WINDOW * WINDOW - 1) / 12.0; // of a coordinate about the middle
+    for (int v = 0; v < WINDOW; v++)
+        for (int u = 0; u < WINDOW; u++) {
+            double value = (double)values[(size_t)(y + v) * (size_t)width + (size_t)(x + u)];
+            sum += value, squares += value * value;
+            along += value * (u - WINDOW / 2), down += value * (v - WINDOW / 2);
+        }
+    double mean = sum / n, left = squares - n * mean * mean - (along * along + down * down) / moment;
+    return mean > 0.0 ? fmax(left, 0.0) / n / (mean * mean) : 0.0;
+}
+
+static double residual_of(const shot *s)
+{
+    double sum = 0.0, count = 0.0;
+    for (int f = 0; f < FRAMES; f++) {
+        const picture *g = &s->picture[f];
+        for (int y = 0; y + WINDOW <= g->height; y += WINDOW)
+            for (int x = 0; x + WINDOW <= g->width; x += WINDOW)
+                if (is_flat(g, x, y)) sum += window_residual(s->values[f], g->width, x, y), count += 1.0;
+    }
+    return sqrt(sum / count);
+}
+
+// ---- the layers of a run
+
+static float *luminances(const char *path, int layer, size_t pixels, error *e)
+{
+    size_t letters = strlen(layers[layer].letters);
+    float *read = sample_read(path, layers[layer].name, layers[layer].letters, e),
+          *out = read ? malloc(pixels * sizeof *out) : NULL;
+    for (size_t i = 0; out && i < pixels; i++) {
+        const float *p = read + letters * i;
+        out[i] = letters == 1 ? *p : (float)luminance((double)p[0], (double)p[1], (double)p[2]);
+    }
+    free(read);
+    return out;
+}
+
+static bool score_layer(shot *s, int layer, const char *dir, const char *name, error *e)
+{
+    bool ok = true;
+    size_t pixels = (size_t)s->view[0].width * (size_t)s->view[0].height;
+    for (int f = 0; ok && f < FRAMES; f++) {
+        char path[512];
+        snprintf(path, sizeof path, "%s/%s.%d.exr", dir, name, f + 1);
+        ok = (s->values[f] = luminances(path, layer, pixels, e)) != NULL;
+    }
+    if (ok) printf("%s\t%.4f\t%.4f\n", layers[layer].name, change_of(s, layer > 0), residual_of(s));
+    for (int f = 0; f < FRAMES; f++) free(s->values[f]), s->values[f] = NULL;
+    return ok;
+}
+
+static bool score_shot(shot *s, const char *dir, const char *name, error *e)
+{
+    bool ok = true;
+    for (int f = 0; ok && f < FRAMES; f++) ok = scene_picture(&s->scene, &s->view[f], &s->picture[f], e);
+    for (int layer = 0; ok && layer < LAYERS; layer++) ok = score_layer(s, layer, dir, name, e);
+    for (int f = 0; f < FRAMES; f++) picture_free(&s->picture[f]);
+    return ok;
+}
+
+int main(int argc, char **argv)
+{
+    static shot s;
+    error e = {0};
+    char text[1024];
+    bool writes = argc == 5 && strcmp(argv[1], "write") == 0, scores = argc == 6 && strcmp(argv[1], "score") == 0;
+    if (!writes && !scores) return 2;
+    set_cameras(&s, atoi(argv[2]), atoi(argv[3]));
+    bool ok = writes ? write_shot(&s, argv[4], &e) : score_shot(&s, argv[4], argv[5], &e);
+    err_format(&e, text, sizeof text);
+    if (!ok) fprintf(stderr, "motion: %s\n", text);
+    return ok ? 0 : 1;
+}
