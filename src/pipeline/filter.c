@@ -178,7 +178,7 @@ bool filter_estimate(job *j, const gbuffer *gb, job_light *light, const plan *p,
     bool ok = !steps_split_suns(p) || pass_split_suns(&c, e);
     if (ok) {
         steps_make(&(step_facts){p, set, steps_given(gb), false, c.sunless->map.id != 0, false}, &list);
-        ok = run_steps(&c, gb, &list, e) && gpu_finish(&j->g, "the passes", e);
+        ok = run_steps(&c, gb, &list, p->method->run_light != NULL, e) && gpu_finish(&j->g, "the passes", e);
     }
     size_t n = (size_t)gb->width * (size_t)gb->height;
     float *rgba = ok ? mem_pixels(4 * n, sizeof *rgba, e) : NULL;
