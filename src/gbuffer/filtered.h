@@ -1,0 +1,85 @@
+// Passes that went through the picture's reconstruction filter: what the steps of filtered_mend share. Internal to the room.
+#ifndef SSDO_GBUFFER_FILTERED_H
+#define SSDO_GBUFFER_FILTERED_H
+
+#include "gbuffer/build.h"
+
+enum { FILTER_REACH = 4, DIRECTIONS = 8, SIDES = DIRECTIONS + 1 };
+
+// Steps to the neighbours, those along the axes first.
+extern const int filtered_step[DIRECTIONS][2];
+
+typedef struct stored {
+    vec3 p;    // camera space; depth alone: (0, 0, what the file's values are linear in)
+    vec3 code; // of the normal, as it is stored: what the filter took the mean of
+    vec3 n;    // decoded, in camera space, of the length that this gives; 0 without
+    double alpha;
+    bool clean;  // one surface
+    vec3 mended; // normal
+} stored;
+
+typedef struct repair {
+    build *b;
+    stored *pixels;
+    stored nothing; // what the background stores
+    bool inverse;   // depth alone whose values are linear in 1 / z
+    bool radial;    // depth alone: distance from the eye
+    bool lengths;   // the normals have a length to go by
+    bool has_width; // the filter's width is known
+    double width;   // its standard deviation as a Gauss in pixels; 0: a box of one pixel
+} repair;
+
+// What one of the surfaces around a pixel would store there.
+typedef struct side {
+    vec3 p, code, n;
+    double alpha, z; // z: planar depth; 0 the background
+    int u, v;        // of the clean pixel
+} side;
+
+// A pixel as a mean of two sides: near, and far behind or beside it.
+typedef struct mixture {
+    const side *near, *far;
+    double share; // of far
+    vec3 n;       // of near
+    double rest;  // what is not explained, squared
+} mixture;
+
+static inline bool filtered_inside(const build *b, int x, int y)
+{
+    return x >= 0 && y >= 0 && x < b->g->width && y < b->g->height;
+}
+
+static inline bool filtered_clean(const repair *r, int x, int y)
+{
+    return filtered_inside(r->b, x, y) && r->pixels[build_index(r->b, x, y)].clean;
+}
+
+// Where a pixel's surface lies in camera space.
+vec3 filtered_place(const repair *r, int x, int y);
+
+// The planar depth that stored values mean, 0 where there is none; and the values of a surface at that depth.
+double filtered_depth(const repair *r, vec3 p, int x, int y);
+vec3 filtered_values(const repair *r, int x, int y, double z);
+
+// filtered_mix.c. The nearest clean pixel in each direction, and the background if it is near; how many.
+int filtered_sides(const repair *r, int x, int y, side list[SIDES]);
+// The two of them that explain the pixel best; rest INFINITY if none do.
+mixture filtered_mixture(const repair *r, const stored *s, const side *list, int count);
+// The near side's normal if the far one's share is taken out, not normalised.
+vec3 filtered_without(const repair *r, const stored *s, const side *far, double share);
+// The far side's share, if the normal of the near one is what makes up the rest: without it, it has length 1. NaN if none does.
+double filtered_share(const repair *r, const stored *s, const side *far);
+// Planar depth where the ray of (x, y) meets the plane through pixel (u, v) with the normal n; the pixel's own where that is too
+// oblique or leads far away.
+double filtered_carried(const build *b, int u, int v, vec3 n, int x, int y);
+
+// filtered_outline.c. Measures the filter's width where round surfaces have their outlines.
+void filtered_measure(repair *r);
+// The near side's depth and normal at the pixel's centre, where it is a round surface that bends away at its outline. False where
+// it is not, or the width is not known.
+bool filtered_outline(const repair *r, const stored *s, const mixture *m, int x, int y, double *z, vec3 *n);
+
+// filtered_surface.c. What the pixel's own side is at its centre.
+void filtered_settle(const repair *r, const stored *s, const mixture *m, int x, int y, double *z, vec3 *n);
+
+#endif

@@ -1,0 +1,121 @@
+// Each pixel of a filtered pass as a mean of two of the sides around it.
+#include "gbuffer/filtered.h"
+
+static const double turn = 0.2;           // weight of a turn of the normal, squared, that only the pixel itself tells of
+static const double step_of_depth = 0.05; // of the depth, that counts as much as normals at right angles
+
+const int filtered_step[DIRECTIONS][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
+
+static vec3 made_normal(const build *b, int x, int y)
+{
+    const float *n = b->g->normal + 4 * build_index(b, x, y);
+    return v3((double)n[0], (double)n[1], (double)n[2]);
+}
+
+double filtered_carried(const build *b, int u, int v, vec3 n, int x, int y)
+{
+    const camera *c = &b->g->camera;
+    vec3 at = build_point(c, u, v, (double)b->g->depth[build_index(b, u, v)]), d = build_ray(c, x, y);
+    double cosine = v3_dot(n, d);
+    if (fabs(cosine) < 0.02 * v3_length(d)) return at.z;
+    double z = v3_dot(n, v3_sub(at, build_point(c, x, y, 0.0))) / cosine;
+    return z > 0.5 * at.z && z < 2.0 * at.z ? z : at.z;
+}
+
+int filtered_sides(const repair *r, int x, int y, side list[SIDES])
+{
+    const int(*step)[2] = filtered_step;
+    const build *b = r->b;
+    int count = 0;
+    bool open = false;
+    for (int k = 0; k < DIRECTIONS; k++)
+        for (int d = 1; d <= FILTER_REACH; d++) {
+            int u = x + d * step[k][0], v = y + d * step[k][1];
+            if (!filtered_inside(b, u, v)) break;
+            size_t i = build_index(b, u, v);
+            open = open || !(b->g->depth[i] > 0.0f) || (b->alpha.data && r->pixels[i].alpha < 0.5);
+            if (!r->pixels[i].clean) continue;
+            side s = {.code = r->pixels[i].code, .n = r->pixels[i].n, .alpha = 1.0, .u = u, .v = v};
+            s.z = filtered_carried(b, u, v, made_normal(b, u, v), x, y);
+            s.p = filtered_values(r, x, y, s.z);
+            list[count++] = s;
+            break;
+        }
+    if (open && count > 0) list[count++] = (side){.p = r->nothing.p, .code = r->nothing.code, .n = r->nothing.n};
+    return count;
+}
+
+typedef struct values {
+    double v[7];
+} values;
+
+static values values_of(const repair *r, double scale, vec3 p, vec3 code, double alpha)
+{
+    double weight = r->b->alpha.data ? 2.0 : 0.0, unit = r->b->normal.encoding == NORMAL_SIGNED ? 1.0 : 2.0;
+    return (values){{p.x / scale, p.y / scale, p.z / scale, unit * code.x, unit * code.y, unit * code.z, weight * alpha}};
+}
+
+vec3 filtered_without(const repair *r, const stored *s, const side *far, double share)
+{
+    return normals_decode(r->b, v3_scale(v3_sub(s->code, v3_scale(far->code, share)), 1.0 / (1.0 - share)));
+}
+
+// If values are stored as they are, or as 0..1, (N - share far) is (1 - share) long; through a curve that is where the search
+// begins.
+double filtered_share(const repair *r, const stored *s, const side *far)
+{
+    double a = v3_dot(far->n, far->n) - 1.0, b = 1.0 - v3_dot(s->n, far->n), c = v3_dot(s->n, s->n) - 1.0;
+    double root = b * b - a * c;
+    if (!(root >= 0.0 && b + sqrt(root) > 0.2)) return (double)NAN;
+    double share = -c / (b + sqrt(root));
+    const double step = 1e-3;
+    for (int k = 0; k < 4 && r->b->normal.encoding > NORMAL_UNORM && share > -0.4 && share < 0.9; k++) {
+        double off = v3_length(filtered_without(r, s, far, share)) - 1.0;
+        share -= off * step / (v3_length(filtered_without(r, s, far, share + step)) - 1.0 - off);
+    }
+    return share;
+}
+
+static mixture mix(const repair *r, const stored *s, const side *near, const side *far, bool turns)
+{
+    mixture m = {.near = near, .far = far, .n = near->n, .rest = INFINITY};
+    double scale = step_of_depth * near->z, d2 = 0.0;
+    if (r->inverse) scale = step_of_depth / near->z;
+    values f = values_of(r, scale, s->p, s->code, s->alpha), a = values_of(r, scale, near->p, near->code, near->alpha),
+           b = values_of(r, scale, far->p, far->code, far->alpha);
+    for (int k = 0; k < 7; k++) m.share += (f.v[k] - a.v[k]) * (b.v[k] - a.v[k]), d2 += (b.v[k] - a.v[k]) * (b.v[k] - a.v[k]);
+    m.share = d2 > 1e-4 ? m.share / d2 : 0.0;
+    if (far->alpha < 1.0 && r->b->alpha.data)
+        m.share = 1.0 - s->alpha;
+    else if (turns)
+        m.share = filtered_share(r, s, far);
+    if (!(m.share > -0.3 && m.share < 1.3)) return m;
+    m.rest = 0.0;
+    if (turns) {
+        if (m.share > 0.8) return m.rest = INFINITY, m;
+        vec3 n = filtered_without(r, s, far, m.share);
+        double odd = (1.0 - m.share) * (v3_length(n) - 1.0);
+        m.n = v3_normalize(n);
+        m.rest = turn * v3_dot(v3_sub(m.n, near->n), v3_sub(m.n, near->n)) + odd * odd;
+    }
+    for (int k = 0; k < 7; k++) {
+        double off = f.v[k] - (1.0 - m.share) * a.v[k] - m.share * b.v[k];
+        if (!turns || k < 3 || k > 5) m.rest += off * off; // the normal's are `odd`
+    }
+    return m;
+}
+
+mixture filtered_mixture(const repair *r, const stored *s, const side *list, int count)
+{
+    mixture best = {.rest = INFINITY};
+    for (int i = 0; i < count; i++)
+        for (int k = i + 1; k < count; k++) {
+            bool swap = list[i].z == 0.0 || (list[k].z > 0.0 && list[k].z < list[i].z);
+            const side *near = &list[swap ? k : i], *far = &list[swap ? i : k];
+            for (int turns = 0; turns < 1 + r->lengths; turns++) {
+                mixture m = mix(r, s, near, far, turns);
+                if (m.rest < best.rest) best = m;
+            }
+        }
+    return best;
+}
