@@ -277,7 +277,7 @@ static void filtered_against_closest(void **state)
            "pixel does\n",
            worst[0], most);
     if (hard_whole()) printf("figure: the same in 512 x 384: at most %.4f rms\n", worst[1]);
-    assert_true(worst[0] < 0.04 && worst[1] < 0.03 && most < 2.0);
+    assert_true(worst[0] < 0.04 && worst[1] < 0.014 && most < 2.0);
 }
 
 // The case's rms; fails unless it is read right.
@@ -347,19 +347,23 @@ static void depth_alone(void **state)
     close_scene(r);
 }
 
-// Round surfaces are followed to their outlines.
+// Round surfaces and the bumps on them are followed to their outlines.
 static void filtered_outlines(void **state)
 {
     static const struct {
+        reading_scene scene;
         int scale;
         reading_filter filter;
-    } forms[] = {{1, FILTER_BOX}, {2, FILTER_BOX}, {2, FILTER_GAUSS}};
+    } forms[] = {{SCENE_ROUND, 1, FILTER_BOX},
+                 {SCENE_ROUND, 2, FILTER_BOX},
+                 {SCENE_ROUND, 2, FILTER_GAUSS},
+                 {SCENE_BUMPY, LARGE, FILTER_BOX}};
     readings *r = *state;
     double worst = 0.0;
     for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
         const reading_case c = {
-            .scene = SCENE_ROUND, .position = WORLD, .normal = WORLD, .encoding = NORMAL_UNORM, .filter = forms[i].filter};
-        open_scene(r, SCENE_ROUND, forms[i].scale);
+            .scene = forms[i].scene, .position = WORLD, .normal = WORLD, .encoding = NORMAL_UNORM, .filter = forms[i].filter};
+        open_scene(r, forms[i].scene, forms[i].scale);
         worst = fmax(worst, must_be_right(r, &c));
         close_scene(r);
     }
