@@ -240,6 +240,9 @@ static const double MOST_LEFT = 0.9;
 // one to be open.
 static const double MOST_LEFT_UNASKED = 0.5, MOST_LIGHT = 0.5, SURE_LIGHT = 0.25;
 
+// More than this many times what the open sky would give, bounces included, is not that sky's light.
+static const double TOO_BRIGHT = 2.0;
+
 // Whether the frame shows where it ends: some background, beyond a crack or two.
 static bool shows_background(const gbuffer *g) { return (double)g->valid < 0.999 * (double)g->width * (double)g->height; }
 
@@ -309,6 +312,34 @@ static model model_of(job *j, const frame_result *r, job_light *light)
     return m;
 }
 
+// Whether the shares explain the picture's light; without, s holds none.
+static bool is_explained(const model *m, const char *file, bool told, bool unasked, double light, const shares *s)
+{
+    static const char other[] = "; lamps or another environment light it, and the outside is as without the option";
+    bool too_bright = light > TOO_BRIGHT, left = !too_bright && s->unexplained > (unasked ? MOST_LEFT_UNASKED : MOST_LEFT);
+    if (told && too_bright)
+        log_warn(m->j->log, "beauty-env", "%s: its light is %.2g times what --beauty-env gives under an open sky%s", file, light,
+                 other);
+    if (told && left)
+        log_warn(m->j->log, "beauty-env", "%s: --beauty-env does not explain its light, of which %.2g is left%s", file,
+                 s->unexplained, other);
+    return !too_bright && !left;
+}
+
+// Nobody said that the environment lit the picture: from open to what was fitted, the darker the picture is.
+static void close_by_degrees(const model *m, const char *file, double light, openness *o)
+{
+    double t = fmin(1.0, fmax(0.0, (MOST_LIGHT - light) / (MOST_LIGHT - SURE_LIGHT)));
+    t *= t * (3.0 - 2.0 * t);
+    for (int i = 0; i < OPENNESS_COUNT; i++) o->share[i] = 1.0 + t * (o->share[i] - 1.0);
+    o->suns = o->suns < 0.0 ? o->suns : 1.0 + t * (o->suns - 1.0);
+    log_warn(
+        m->j->log, "dark",
+        "%s: its own light is %.2g of what --env gives with the outside open, so the outside is closed as that light tells; if "
+        "--env is not what lit it, name that with --beauty-env or choose --outside open",
+        file, light);
+}
+
 bool outside_fit(job *j, frame_result *r, job_light *light, bool told, openness *out, error *e)
 {
     const openness prior = *out;
@@ -316,37 +347,19 @@ bool outside_fit(job *j, frame_result *r, job_light *light, bool told, openness 
     double share;
     shares s;
     if (!r->lit.depth || r->lit.valid == 0) return true;
-    model m = model_of(j, r, light);
-    if (m.set.planes && !r->planes.found && !planes_find(&r->gb, &r->planes, e)) return false;
-    if (!find_walls(&m, &m.walls, e)) return false;
     bool unasked = !told && openness_is_whole(&prior);
     if (unasked && shows_background(&r->gb)) return true;
-    if (!compare_light(&m, &share, e)) return false;
+    model m = model_of(j, r, light);
+    if (m.set.planes && !r->planes.found && !planes_find(&r->gb, &r->planes, e)) return false;
+    if (!find_walls(&m, &m.walls, e) || !compare_light(&m, &share, e)) return false;
+    log_info(j->log, "outside: the picture's own light is %.2g of what an open sky would give", share);
     if (unasked && share >= MOST_LIGHT) return true;
-    if (!fit_shares(&m, &prior, share, &s, e)) return false;
-    if (s.unexplained > (unasked ? MOST_LEFT_UNASKED : MOST_LEFT)) {
-        if (told)
-            log_warn(
-                j->log, "beauty-env",
-                "%s: --beauty-env does not explain the picture's light (%.2g of it is left); lamps or another environment light "
-                "it, and the outside is as without the option",
-                file, s.unexplained);
-        return true;
-    }
+    if (share <= TOO_BRIGHT && !fit_shares(&m, &prior, share, &s, e)) return false;
+    if (!is_explained(&m, file, told, unasked, share, &s)) return true;
     *out = openness_of(&m, s.x);
     r->unexplained = s.unexplained;
     if (light != &j->light) out->suns = -1.0;
-    if (unasked) {
-        double t = fmin(1.0, fmax(0.0, (MOST_LIGHT - share) / (MOST_LIGHT - SURE_LIGHT)));
-        t *= t * (3.0 - 2.0 * t);
-        for (int i = 0; i < OPENNESS_COUNT; i++) out->share[i] = 1.0 + t * (out->share[i] - 1.0);
-        out->suns = out->suns < 0.0 ? out->suns : 1.0 + t * (out->suns - 1.0);
-        log_warn(j->log, "dark",
-                 "%s: its own light is %.2g of what --env gives with the outside open; so the outside is closed as that light "
-                 "tells. If "
-                 "--env is not what lit it, name that with --beauty-env, or choose --outside open",
-                 file, share);
-    }
+    if (unasked) close_by_degrees(&m, file, share, out);
     say(j, r, out, s.unexplained);
     return true;
 }
