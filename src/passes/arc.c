@@ -289,7 +289,7 @@ bool arc_run_light(pass_context *c, bool sky, bool bounce, error *e)
     if (bounce && (!light_planes(seen, &params, sender, albedo, e) || !light_outside(seen, &params, sender, albedo, e) ||
                    !make_senders(seen, sender, albedo, e) || !pass_make_image(c, IMAGE_INDIRECT, e)))
         return false;
-    if (sky) c->suns_apart = c->sunless->map.id != 0;
+    if (sky) c->suns_pending = c->sunless->map.id != 0;
     variant v = arc_variant(seen, "");
     variant_add(&v, visibility, "VISIBILITY");
     variant_add(&v, sky && bounce, "BOUNCE");
@@ -305,7 +305,7 @@ bool arc_run_light(pass_context *c, bool sky, bool bounce, error *e)
                                : "arc bounce",
         .variant = v.words,
         .seen = seen,
-        .environment = sky && c->suns_apart ? &c->sunless->map : NULL,
+        .environment = sky && c->suns_pending ? &c->sunless->map : NULL,
         .reads = {{"surface_image", &seen->image[bounce ? IMAGE_SENDERS : IMAGE_SURFACE]},
                   {"planes_image", &seen->image[IMAGE_PLANES]},
                   {"sender_image", sender},

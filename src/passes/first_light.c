@@ -55,7 +55,7 @@ bool arc_first_light(pass_context *c, error *e)
     bool ok = estimate(c, seen, e);
     move(&seen->image[IMAGE_RADIANCE], &seen->image[IMAGE_FIRST_LIGHT]);
     if (seen != c) gpu_image_free(&c->image[IMAGE_RADIANCE]);
-    bool suns = seen->suns_apart;
-    seen->suns_apart = false;
+    bool suns = seen->suns_pending;
+    seen->suns_pending = false;
     return ok && (!suns || pass_add_suns(seen, &seen->image[IMAGE_FIRST_LIGHT], NULL, e));
 }

@@ -34,7 +34,7 @@ typedef enum method_reach {
 
 // How a bounce comes to be.
 typedef enum bounce_march {
-    BOUNCE_APART,        // after the method
+    BOUNCE_AFTER,        // after the method
     BOUNCE_WITH_PICTURE, // its own method's light march makes it too, unless what bounces is that light
     BOUNCE_WITH_METHOD,  // its own method makes it always
 } bounce_march;

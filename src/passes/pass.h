@@ -128,8 +128,8 @@ typedef struct pass_context {
     int width, height;
     gpu_image image[IMAGE_COUNT]; // id 0: the frame has none, or its pass has not run
 
-    bool suns_apart;  // radiance and visibility lack the suns of `sunless`: pass_suns adds them after the filter
-    plane_set planes; // found by the pass that uses them
+    bool suns_pending; // radiance and visibility lack the suns of `sunless`: pass_suns adds them after the filter
+    plane_set planes;  // found by the pass that uses them
     adaptive_sampling adaptive;
 
     GLuint frame_uniforms, params_uniforms;

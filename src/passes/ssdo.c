@@ -61,7 +61,7 @@ static const variant_row variants[] = {
 const bounce_kind bounce_ssdo = {
     .name = "ssdo",
     .source = SEES_PICTURE,
-    .march = BOUNCE_APART,
+    .march = BOUNCE_AFTER,
     .run = run_bounce,
 };
 

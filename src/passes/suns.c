@@ -74,7 +74,7 @@ bool pass_split_suns(pass_context *c, error *e)
         bool ok = pass_upload_environment(c->g, &rest, &l->map, e);
         environment_free(&rest);
         if (!ok) return false;
-        log_info(c->log, "environment: %d small bright source%s treated apart", l->suns.count,
+        log_info(c->log, "environment: %d small bright source%s marched one by one", l->suns.count,
                  l->suns.count > 1 ? "s are" : " is");
     }
     l->ready = true;
@@ -126,9 +126,9 @@ bool pass_add_suns(pass_context *c, gpu_image *light, gpu_image *visibility, err
 
 bool pass_suns(pass_context *c, error *e)
 {
-    if (!c->suns_apart) return true;
+    if (!c->suns_pending) return true;
     bool ok = pass_add_suns(c, &c->image[IMAGE_RADIANCE], &c->image[IMAGE_VISIBILITY], e);
     gpu_image_free(&c->image[IMAGE_SUNS]);
-    c->suns_apart = !ok;
+    c->suns_pending = !ok;
     return ok;
 }

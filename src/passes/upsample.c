@@ -28,7 +28,7 @@ static bool bring(pass_context *c, const pass_context *small, const draw *d, err
     variant v = {{0}};
     bool open_light = d->colour_count > 0 && image_table[d->colours[0]].resampled == AS_OPEN_LIGHT;
     for (int i = 0; open_light && i < 9; i++)
-        for (int k = 0; k < 3; k++) params.light[i][k] = (float)(small->suns_apart ? c->sunless->rest[i][k] : c->env->sh[i][k]);
+        for (int k = 0; k < 3; k++) params.light[i][k] = (float)(small->suns_pending ? c->sunless->rest[i][k] : c->env->sh[i][k]);
     for (int k = 0; k < d->scalar_count + d->colour_count; k++) {
         bool colour = k >= d->scalar_count;
         int place = colour ? SCALARS + k - d->scalar_count : k;
@@ -60,7 +60,7 @@ static bool next_of(const pass_context *c, const pass_context *small, image_set 
 bool pass_upsample(pass_context *c, const pass_context *small, image_set which, error *e)
 {
     int scalar = 0, colour = 0;
-    if (which & (IMAGE_BIT(IMAGE_RADIANCE) | IMAGE_BIT(IMAGE_VISIBILITY))) c->suns_apart = small->suns_apart;
+    if (which & (IMAGE_BIT(IMAGE_RADIANCE) | IMAGE_BIT(IMAGE_VISIBILITY))) c->suns_pending = small->suns_pending;
     for (;;) {
         draw d = {.scalar_count = 0};
         while (d.scalar_count < SCALARS && next_of(c, small, which, false, &scalar, &d.scalars[d.scalar_count])) d.scalar_count++;

@@ -153,7 +153,7 @@ static const variant_row variants[] = {{.program = "vpl", .pattern = ""}, {0}};
 const bounce_kind bounce_vpl = {
     .name = "vpl",
     .source = SEES_PICTURE,
-    .march = BOUNCE_APART,
+    .march = BOUNCE_AFTER,
     .exact = true,
     .variants = variants,
     .run = run_bounce,

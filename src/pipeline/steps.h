@@ -11,9 +11,9 @@
 typedef enum step_size {
     STEP_WHOLE,
     STEP_SMALL, // on the frame of half the size
-    STEP_AMID,  // there, seeing the whole
-    STEP_UP,    // from that to the whole
-    STEP_DOWN,  // from the whole to that
+    STEP_AMID,  // on the smaller frame, but its marches look at the whole one
+    STEP_UP,    // from the smaller frame to the whole one
+    STEP_DOWN,  // from the whole one to the smaller
 } step_size;
 
 typedef struct plan_step {
