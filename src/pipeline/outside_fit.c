@@ -299,16 +299,18 @@ static void say(job *j, const frame_result *r, const openness *o, double unexpla
 static model model_of(job *j, const frame_result *r, job_light *light)
 {
     model m = {.j = j, .r = r, .light = light, .set = r->set, .pixels = (size_t)r->lit.width * (size_t)r->lit.height};
+    // Whatever the frame's own quality, so that it does not decide what is open.
     m.set.size = SIZE_FULL;
-    m.set.samples = m.set.samples < SAMPLES ? m.set.samples : SAMPLES;
-    m.set.blur = (m.set.blur * r->lit.width + r->gb.width - 1) / r->gb.width;
+    m.set.target_error = 0.0;
+    m.set.samples = SAMPLES;
+    m.set.blur = (r->plan.method->blur * r->lit.width + r->gb.width - 1) / r->gb.width;
     m.plan = (plan){.method = r->plan.method,
                     .estimator = r->plan.method->bounce,
                     .layers = 1u << LAYER_RADIANCE,
                     .light = true,
                     .relight = true,
                     .want_radiance = true,
-                    .blur = r->plan.blur};
+                    .blur = true};
     return m;
 }
 

@@ -18,6 +18,8 @@ fits() { "$SSDO" -v "$@" 2>&1 >/dev/null | sed -n 's/.*outside: \([0-9.]*\) of.*
 # The picture's own light: of a room with a roof; of one without, which is dark for this sky; not of an open box.
 corner=$covered/corner.exr soft="--env $here/samples/sky_soft.exr"
 [ -n "$(fits "$covered/room.exr" -o o.exr $sky $fast)" ] || die "a room's own light tells nothing"
+lit=$(fits "$covered/room.exr" -o o.exr $sky --layers radiance --keep none --samples 3 --blur none)
+[ "$lit" = "$(fits "$covered/room.exr" -o o.exr $sky --layers radiance,occlusion --keep none --error 0.1)" ] || die "the quality decides what is open"
 [ -n "$(fits "$corner" -o o.exr $soft $fast)" ] || die "a dark corner's own light tells nothing"
 "$SSDO" "$corner" -o o.exr $soft $fast 2>&1 | grep -q 'warning: .*corner.exr: its own light is 0.0' || die "no warning that the outside was closed"
 [ -z "$(fits "$here/samples/box.exr" -o o.exr $soft $fast)" ] || die "an open box is fitted unasked"
