@@ -15,7 +15,7 @@ PICTURE(rgba32f, receiver_normal);
 Receiver receiver_at(ivec2 p) {
     vec4 normal = FETCH(receiver_normal, p);
     int chosen = int(normal.w), side = params.side;
-    ivec2 q = side * p + ivec2(chosen % side, chosen / side % side);
+    ivec2 q = side * p + ivec2(chosen % side, chosen % (side * side) / side);
     return Receiver(chosen < side * side ? float(side) * (vec2(p) + 0.5) : vec2(q) + 0.5, q, FETCH(receiver_depth, p).r, normal.xyz);
 }
 #else

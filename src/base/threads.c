@@ -3,6 +3,10 @@
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
+#include <stdio.h>
+#ifdef __GLIBC__
+#include <gnu/libc-version.h>
+#endif
 
 enum { MAX_THREADS = 256 };
 
@@ -47,6 +51,15 @@ bool threads_for(int threads, size_t count, threads_fn fn, void *context)
     work(&workers[0]);
     for (int i = 1; i < started; i++) pthread_join(workers[i].thread, NULL);
     return !atomic_load(&l.failed);
+}
+
+bool threads_start_beside_loading(const char *libc_version)
+{
+    int major, minor;
+#ifdef __GLIBC__
+    if (!libc_version) libc_version = gnu_get_libc_version();
+#endif
+    return !libc_version || sscanf(libc_version, "%d.%d", &major, &minor) != 2 || major > 2 || minor >= 34;
 }
 
 int threads_default(void)

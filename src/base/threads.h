@@ -13,6 +13,10 @@ typedef bool (*threads_fn)(void *context, size_t item, int worker);
 // Returns false if any item returned false. With threads <= 1, or if no thread can be started, it runs in the caller.
 bool threads_for(int threads, size_t count, threads_fn fn, void *context);
 
+// Whether a thread may start while another one loads libraries. `libc_version`: of glibc, NULL for the one that runs. One before
+// 2.34 ends the process if the two meet.
+bool threads_start_beside_loading(const char *libc_version);
+
 // Threads to use when the user names none: the CPUs this process may run on (affinity), at least 1.
 int threads_default(void);
 

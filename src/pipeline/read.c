@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/threads.h"
 #include "pipeline/output_names.h"
 #include "pipeline/prepare.h"
 #include "pipeline/relight.h"
@@ -189,7 +190,8 @@ bool read_and_open(job *j, const char *const *inputs, int count, frame_result *r
     pthread_t thread;
     if (j->g.context) return frame_read_files(j, inputs, count, r, e);
     if (!begin_reading(j, inputs, count, r, e)) return false;
-    bool beside = larger_side(r) <= SURE && pthread_create(&thread, NULL, read_beside, &d) == 0;
+    bool beside =
+        larger_side(r) <= SURE && threads_start_beside_loading(NULL) && pthread_create(&thread, NULL, read_beside, &d) == 0;
     bool opened = job_open_device(j, e);
     if (beside) pthread_join(thread, NULL);
     if (opened && !beside) return fits_device(j, r, e) && finish_reading(j, r, e);

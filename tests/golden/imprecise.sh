@@ -1,6 +1,7 @@
 #!/bin/sh
 # GL lets a division be wrong by 2.5 units in the last place, and hardware uses that; llvmpipe divides exactly. Here every quotient of two
-# plain names is wrong by one unit, up or down: an empty plane stays open to the bit, at every tilt.
+# plain names is wrong by one unit, up or down: an empty plane stays open to the bit, at every tilt. A quotient
+# of integers must look otherwise, `k % (n * n) / n`, for the text does not tell them.
 set -eu
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "base/threads.h"
 #include "gpu/internal.h"
 #include "must.h"
 #include "passes/variants.h"
@@ -120,6 +121,17 @@ static void habits_follow_the_device(void **state)
     }
 }
 
+static void threads_wait_on_an_old_libc(void **state)
+{
+    (void)state;
+    assert_false(threads_start_beside_loading("2.31"));
+    assert_false(threads_start_beside_loading("2.28"));
+    assert_true(threads_start_beside_loading("2.34"));
+    assert_true(threads_start_beside_loading("2.41"));
+    assert_true(threads_start_beside_loading("3.0"));
+    assert_true(threads_start_beside_loading("somebody's"));
+}
+
 static bool count_set(void *context, const char *words)
 {
     (void)words;
@@ -148,6 +160,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_program_keeps_to_the_minima),
         cmocka_unit_test(habits_follow_the_device),
+        cmocka_unit_test(threads_wait_on_an_old_libc),
         cmocka_unit_test(patterns_allow_what_they_list),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
