@@ -73,7 +73,7 @@ void main() {
     vec3 shut = vec3(0.0);
 #ifdef ROUND
     centre.turn = turn_of_round(centre.turn);
-    if (params.before > 0) first = sums = imageLoad(sums_image, p).xy;
+    if (params.before > 0) first = sums = LOAD(sums_image, p).xy;
 #endif
     for (int i = 0; i < params.slices; i++) {
         Slice s = march_slice(centre, i);

@@ -52,27 +52,27 @@ void main() {
         }
     if (from == p) return;
 #ifdef OCCLUSION
-    imageStore(occlusion_image, p, imageLoad(occlusion_image, from));
+    imageStore(occlusion_image, p, LOAD(occlusion_image, from));
 #endif
 #ifdef VISIBILITY
-    imageStore(visibility_image, p, imageLoad(visibility_image, from));
+    imageStore(visibility_image, p, LOAD(visibility_image, from));
 #endif
 #ifdef RADIANCE
-    imageStore(radiance_image, p, imageLoad(radiance_image, from));
+    imageStore(radiance_image, p, LOAD(radiance_image, from));
 #endif
 #ifdef INDIRECT
-    imageStore(indirect_image, p, imageLoad(indirect_image, from));
+    imageStore(indirect_image, p, LOAD(indirect_image, from));
 #endif
 #ifdef BENT
-    imageStore(bent_image, p, imageLoad(bent_image, from));
+    imageStore(bent_image, p, LOAD(bent_image, from));
 #endif
 #ifdef SH
-    imageStore(sh0_image, p, imageLoad(sh0_image, from));
-    imageStore(sh1_image, p, imageLoad(sh1_image, from));
-    imageStore(sh2_image, p, imageLoad(sh2_image, from));
+    imageStore(sh0_image, p, LOAD(sh0_image, from));
+    imageStore(sh1_image, p, LOAD(sh1_image, from));
+    imageStore(sh2_image, p, LOAD(sh2_image, from));
 #ifdef BANDS3
-    imageStore(sh3_image, p, imageLoad(sh3_image, from));
-    imageStore(sh4_image, p, imageLoad(sh4_image, from));
+    imageStore(sh3_image, p, LOAD(sh3_image, from));
+    imageStore(sh4_image, p, LOAD(sh4_image, from));
 #endif
 #endif
 }

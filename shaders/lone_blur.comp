@@ -19,9 +19,9 @@ layout(std430) readonly buffer Lone { uint lone[]; }; // tile: x the first of th
 layout(std430) buffer Filtered { vec4 filtered[]; };
 
 Values load(ivec2 p) {
-    vec4 v = imageLoad(colour_image, p);
+    vec4 v = LOAD(colour_image, p);
 #ifdef VISIBILITY
-    v.a = imageLoad(scalar_image, p).r;
+    v.a = LOAD(scalar_image, p).r;
 #endif
     return Values(v);
 }

@@ -18,8 +18,8 @@ vec3 sent_by(ivec2 q) {
 void main() {
     int i = int(gl_LocalInvocationIndex);
     if (i >= params.planes) return;
-    vec4 equation = imageLoad(planes_image, ivec2(PLANE_EQUATION, i));
-    float margin = imageLoad(planes_image, ivec2(PLANE_LIGHT, i)).w;
+    vec4 equation = LOAD(planes_image, ivec2(PLANE_EQUATION, i));
+    float margin = LOAD(planes_image, ivec2(PLANE_LIGHT, i)).w;
     vec3 sum = vec3(0.0);
     float count = 0.0;
     for (int k = 0; k < GRID * GRID; k++) {

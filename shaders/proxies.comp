@@ -111,7 +111,7 @@ void apply(ivec2 p, vec3 P, vec3 N) {
         float open = min(0.5 - 0.5 * lean * c + 0.25 * (1.0 - c * c) * g / max(c, k.sn), 1.0);
         light += F * left_by_others(i, k, P, N, UNLIMITED) * open * FETCH(sphere_image, ivec2(i, 1)).rgb * sh_irradiance_over_pi(to_map(-k.axis));
     }
-    imageStore(indirect_image, p, imageLoad(indirect_image, p) + vec4(params.strength * light, 0.0));
+    imageStore(indirect_image, p, LOAD(indirect_image, p) + vec4(params.strength * light, 0.0));
 }
 #else
 void apply(ivec2 p, vec3 P, vec3 N) {
@@ -142,25 +142,25 @@ void apply(ivec2 p, vec3 P, vec3 N) {
     open_luminance = open;
 #endif
 #ifdef OCCLUSION
-    imageStore(occlusion_image, p, open * imageLoad(occlusion_image, p));
+    imageStore(occlusion_image, p, open * LOAD(occlusion_image, p));
 #endif
 #ifdef SH
-    imageStore(sh0_image, p, open * imageLoad(sh0_image, p));
-    imageStore(sh1_image, p, open * imageLoad(sh1_image, p));
-    imageStore(sh2_image, p, open * imageLoad(sh2_image, p));
+    imageStore(sh0_image, p, open * LOAD(sh0_image, p));
+    imageStore(sh1_image, p, open * LOAD(sh1_image, p));
+    imageStore(sh2_image, p, open * LOAD(sh2_image, p));
 #ifdef BANDS3
-    imageStore(sh3_image, p, open * imageLoad(sh3_image, p));
-    imageStore(sh4_image, p, open * imageLoad(sh4_image, p));
+    imageStore(sh3_image, p, open * LOAD(sh3_image, p));
+    imageStore(sh4_image, p, open * LOAD(sh4_image, p));
 #endif
 #endif
 #ifdef VISIBILITY
-    imageStore(visibility_image, p, open_luminance * imageLoad(visibility_image, p));
+    imageStore(visibility_image, p, open_luminance * LOAD(visibility_image, p));
 #endif
 #ifdef RADIANCE
-    imageStore(radiance_image, p, vec4(open_light, 1.0) * imageLoad(radiance_image, p));
+    imageStore(radiance_image, p, vec4(open_light, 1.0) * LOAD(radiance_image, p));
 #endif
 #ifdef BENT
-    imageStore(bent_image, p, imageLoad(bent_image, p) - vec4(shut, 0.0));
+    imageStore(bent_image, p, LOAD(bent_image, p) - vec4(shut, 0.0));
 #endif
 }
 #endif

@@ -37,10 +37,10 @@ void main() {
     }
     float share = ratio(sum, total);
     vec3 light = share <= own.a ? own.rgb * (own.a > 0.0 ? ratio(share, own.a) : 1.0) : own.rgb + (share - own.a) * all;
-    imageStore(light_image, p, vec4(imageLoad(light_image, p).rgb + light, 0.0));
+    imageStore(light_image, p, vec4(LOAD(light_image, p).rgb + light, 0.0));
 #ifdef VISIBILITY
     float sky = dot(sh_irradiance_over_pi(arc_block.rest, to_map(N)), LUMINANCE), suns = dot(all, LUMINANCE);
-    float seen = imageLoad(scalar_image, p).r;
+    float seen = LOAD(scalar_image, p).r;
     if (sky + suns > 0.0) imageStore(scalar_image, p, vec4(ratio(seen * sky + share * suns, sky + suns)));
 #endif
 }

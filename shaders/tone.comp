@@ -9,7 +9,7 @@ layout(r32f) uniform image2D scalar_image;
 void main() {
     ivec2 p = this_pixel();
     if (!in_tile(p)) return;
-    float S = 1.0 - imageLoad(scalar_image, p).r;
+    float S = 1.0 - LOAD(scalar_image, p).r;
     float a = clamp(1.0 - params.scale * S, 0.0, 1.0);
     imageStore(scalar_image, p, vec4(params.contrast == 1.0 || a == 0.0 ? a : pow(a, params.contrast)));
 }

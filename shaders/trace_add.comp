@@ -18,7 +18,7 @@ void main() {
     ivec2 p = pixel_of(i);
     Hit h = hits[i];
     float open = h.triangle == HIT_NOTHING || h.t > params.radius ? 1.0 : 0.0;
-    imageStore(occlusion_image, p, imageLoad(occlusion_image, p) + vec4(open));
+    imageStore(occlusion_image, p, LOAD(occlusion_image, p) + vec4(open));
 #ifdef LIGHT
     vec3 all = gains[i].rgb, light = h.triangle == HIT_NOTHING ? all : vec3(0.0);
     if (params.alias_table.x > 0) {
@@ -26,6 +26,6 @@ void main() {
         all += gains[j].rgb;
         if (hits[j].triangle == HIT_NOTHING) light += gains[j].rgb;
     }
-    imageStore(radiance_image, p, imageLoad(radiance_image, p) + vec4(light, dot(all, LUMINANCE)));
+    imageStore(radiance_image, p, LOAD(radiance_image, p) + vec4(light, dot(all, LUMINANCE)));
 #endif
 }

@@ -19,9 +19,9 @@ void main() {
     if (i >= batch_size()) return;
     ivec2 p = pixel_of(i);
     float share = 1.0 / float(params.samples);
-    imageStore(occlusion_image, p, imageLoad(occlusion_image, p) * share);
+    imageStore(occlusion_image, p, LOAD(occlusion_image, p) * share);
 #ifdef LIGHT
-    vec4 light = imageLoad(radiance_image, p);
+    vec4 light = LOAD(radiance_image, p);
 #ifdef VISIBILITY
     float lit = dot(light.rgb, LUMINANCE);
     imageStore(visibility_image, p, vec4(light.w > 0.0 ? lit / light.w : 1.0));
@@ -29,6 +29,6 @@ void main() {
     imageStore(radiance_image, p, vec4(light.rgb * share, 0.0));
 #endif
 #ifdef BOUNCE
-    imageStore(indirect_image, p, imageLoad(indirect_image, p) * share * params.strength);
+    imageStore(indirect_image, p, LOAD(indirect_image, p) * share * params.strength);
 #endif
 }

@@ -14,5 +14,5 @@ void main() {
     vec3 light = hits[i].triangle == HIT_NOTHING ? gains[i].rgb : vec3(0.0);
     uint j = batch_size() + i;
     if (params.alias_table.x > 0 && hits[j].triangle == HIT_NOTHING) light += gains[j].rgb;
-    imageStore(indirect_image, p, imageLoad(indirect_image, p) + vec4(light, 0.0));
+    imageStore(indirect_image, p, LOAD(indirect_image, p) + vec4(light, 0.0));
 }
