@@ -284,7 +284,7 @@ $(LISTS): $(BUILD)/tests/limits/list_variants.o $(BUILD)/rooms.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
 # The benches are compiled, so that they still do.
-unit: $(UNIT) $(HARD) $(REPLAY) $(FAULT) $(LISTS) $(GPU_TOOLS) $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/bench/*.c))
+unit: $(UNIT) $(HARD) $(REPLAY) $(FAULT) $(LISTS) $(GPU_TOOLS) $(BUILD)/tests/bench/motion $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/bench/*.c))
 
 # Real schedulers on this machine (tests/farm/check.sh); what it starts, it stops.
 .PHONY: check-farm

@@ -16,7 +16,7 @@ mkdir -p "$dir"
     echo "| --- | --- | --- | ---: | ---: |"
     for quality in ${QUALITIES:-draft standard high}; do
         "$bin" -q "$dir/in.#.exr" -o "$dir/$quality.#.exr" --frames 1-8 --layers occlusion,radiance,indirect --keep none --float \
-            --env "${SKY:-samples/sky_soft.exr}" --quality "$quality" "$@" >&2
+            --env "${SKY:-samples/sky_soft.exr}" --outside open --quality "$quality" "$@" >&2
         "$tool" score "$width" "$height" "$dir" "$quality" |
             awk -F '\t' -v size="$size" -v q="$quality" '{ printf "| %s | %s | %s | %.4f | %.2f |\n", size, q, $1, $2, 100 * $3 }'
     done
