@@ -25,7 +25,8 @@ warn="-Wall -Wextra -Werror -Wpedantic -std=c11 ${SANFLAGS:-}"
 {
     ${CC:-cc} $warn samples/library/filter.c -o "$dir/shared" $(pkg-config --cflags --libs ssdo) -Wl,-rpath,"$dir/usr/lib" &&
         ${CC:-cc} $warn samples/library/filter.c -o "$dir/static" $(pkg-config --cflags ssdo) "$dir/usr/lib/libssdo.a" \
-            $(pkg-config --static --libs ssdo | sed 's/-lssdo//') -Wl,--as-needed
+            $(pkg-config --static --libs ssdo | sed 's/-lssdo//') -Wl,--as-needed \
+            $(pkg-config --libs-only-L OpenEXR | sed 's/-L/-Wl,-rpath,/g')
 } || die "the example does not build"
 ldd "$dir/static" | grep -q libssdo && die "the static example needs the shared library"
 # A sanitizer must be loaded first, which Python does not do, and the leaks of drivers are only known to the tests' programs.
