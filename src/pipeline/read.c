@@ -117,10 +117,11 @@ static int larger_side(const frame_result *r)
 }
 
 // Refuses, before any pixel is read, a frame that the memory cannot hold. The bytes a pixel are the peak measured with 13
-// channels and four layers, images of a software renderer included; the rounds of --error keep another 40.
+// channels and four layers, images of a software renderer included; the rounds of --error keep another 20, and the picture's own
+// light for the outside's fit 50.
 static bool fits_memory(const job *j, const frame_result *r, error *e)
 {
-    const double bytes = j->o->error > 0.0 ? 270.0 : 230.0, gib = 1024.0 * 1024.0 * 1024.0;
+    const double bytes = r->plan.need_to_fit ? 340.0 : j->o->error > 0.0 ? 310.0 : 290.0, gib = 1024.0 * 1024.0 * 1024.0;
     const box2 w = r->file->parts[r->resolution.main_part].data_window;
     double needed = bytes * box2_width(w) * box2_height(w), available = (double)mem_available();
     if (needed <= available) return true;
