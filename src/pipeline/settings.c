@@ -79,6 +79,15 @@ static const double LEAST_ROOF = 0.01, MOST_ROOF = 0.03;
 // Which way is up needs the camera's rotation, or an environment that moves with the camera.
 static bool knows_up(const job *j, const frame_result *r) { return r->gb.camera.has_rotation || j->o->env_frame == FRAME_CAMERA; }
 
+// Whether the camera lies on its back in a world with this axis up, and stands upright in one with the other. The axis is an
+// assumption unless the user says it, and the wrong one makes a roof of what lies ahead.
+static bool stands_on_other_axis(const job *j, const frame_result *r)
+{
+    vec3 up = m3_apply(world_from_camera(j, r), v3(0, -1, 0));
+    double assumed = settings_up_z(j, r) ? up.z : up.y, other = settings_up_z(j, r) ? up.y : up.z;
+    return !j->o->env_up && j->o->env_frame != FRAME_CAMERA && assumed < 0.5 && other > 0.7;
+}
+
 static shot_facts outside_of(const job *j, const frame_result *r)
 {
     shot_facts f = {.outside = openness_even(j->o->outside < 0.0 ? 1.0 : j->o->outside), .roof = -1.0};
@@ -86,6 +95,15 @@ static shot_facts outside_of(const job *j, const frame_result *r)
     if (!plan_asks_outside(j->o) || !knows_up(j, r)) return f;
     vec3 up = settings_up_z(j, r) ? v3(0, 0, 1) : v3(0, 1, 0);
     f.roof = openings_roof(&r->gb, m3_apply(m3_transpose(world_from_camera(j, r)), up));
+    if (f.roof > LEAST_ROOF && stands_on_other_axis(j, r)) {
+        log_warn(j->log, "up",
+                 "%s: with %c up, %.3g %% of the picture is a roof, but the camera looks steeply up and would stand upright with "
+                 "%c up; "
+                 "the outside is taken to be open; say which it is with --env-up, for the environment turns with it",
+                 r->file->path, settings_up_z(j, r) ? 'z' : 'y', 100.0 * f.roof, settings_up_z(j, r) ? 'y' : 'z');
+        f.roof = -1.0;
+        return f;
+    }
     double t = fmin(fmax((f.roof - LEAST_ROOF) / (MOST_ROOF - LEAST_ROOF), 0.0), 1.0);
     f.outside = openness_even(1.0 + (OUTSIDE_COVERED - 1.0) * t * t * (3.0 - 2.0 * t));
     return f;

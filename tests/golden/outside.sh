@@ -15,6 +15,18 @@ fits() { "$SSDO" -v "$@" 2>&1 >/dev/null | sed -n 's/.*outside: \([0-9.]*\) of.*
 [ "$(says "$here/samples/box.exr" -o o.exr $sky $fast)" = 1 ] || die "an open box whose lid is seen to end is closed"
 [ "$(says "$here/samples/horizon.exr" -o o.exr $sky $fast)" = 1 ] || die "a landscape is closed"
 
+# A world with z up under plain names, which the program takes for y up: what lies ahead is no roof, and somebody has to say which it is.
+for s in box covered/room; do
+    oiiotool -i:ch=ViewLayer.Position.X,ViewLayer.Position.Y,ViewLayer.Position.Z,ViewLayer.Normal.X,ViewLayer.Normal.Y,ViewLayer.Normal.Z \
+        "$here/samples/$s.exr" --chnames P.X,P.Y,P.Z,N.X,N.Y,N.Z -d float -o plain.exr
+    "$SSDO" -v plain.exr -o o.exr $sky $fast 2>log || die "plain names: $(cat log)"
+    grep -q 'warning: plain.exr: with y up.*--env-up' log || die "$s: no word on which axis is up"
+    ! grep -q 'outside: 0.08' log || die "$s: closed by what lies ahead"
+    "$SSDO" -v plain.exr -o o.exr $sky $fast --env-up z >log 2>&1
+    ! grep -q 'env-up' log || die "$s: --env-up z is doubted"
+done
+grep -q 'outside: 0.08' log || die "a room of plain names is not closed with --env-up z"
+
 # The picture's own light: of a room with a roof; of one without, which is dark for this sky; not of an open box.
 corner=$covered/corner.exr soft="--env $here/samples/sky_soft.exr"
 [ -n "$(fits "$covered/room.exr" -o o.exr $sky $fast)" ] || die "a room's own light tells nothing"
