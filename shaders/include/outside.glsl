@@ -1,5 +1,6 @@
 // Directions that leave the frame (README, Outside). Where the march has met nothing, a direction is open if the picture shows that it
-// passes through an opening. Of the others the share `openness` is taken to be open. What closes the rest sends the frame's mean light.
+// passes through an opening. Of the others a share is taken to be open, by direction (`unknown_openness`). What closes the rest sends the
+// frame's mean light.
 
 #ifdef SURROUND
 // The surround (src/passes/surround.h): what further G-buffers show, each around its own eye, one map below the other. A texel holds the
@@ -166,27 +167,35 @@ vec2 look_in(Side s, float begin, float width, int cell, float jitter) {
 #endif
 }
 
-// How open the outside is where nothing is known: linear between the numbers of a lat-long grid (src/passes/openness.h).
-vec3 upright(vec3 v) { // camera space
-    return vec3(dot(arc_block.upright_from_camera[0].xyz, v), dot(arc_block.upright_from_camera[1].xyz, v), dot(arc_block.upright_from_camera[2].xyz, v));
+vec3 upright(vec3 v) { // from camera space, to the axes of the grid and its box
+    vec4 rows[3] = arc_block.upright_from_camera;
+    return vec3(dot(rows[0].xyz, v), dot(rows[1].xyz, v), dot(rows[2].xyz, v));
 }
 
+// A number of the lat-long grid (src/passes/openness.h).
 float stored_openness(int row, int column) {
     int i = row == 0 ? 0 : row > OPENNESS_ROWS ? 1 : 2 + (row - 1) * OPENNESS_COLUMNS + (column & (OPENNESS_COLUMNS - 1));
     return arc_block.openness[i >> 2][i & 3];
 }
 
+// Where a ray from P leaves the box, as a direction from the middle of the box, whose sides count as equally long. From the middle of
+// a box without a size that is the ray's own direction. Upright axes, d unit.
+vec3 way_through_walls(vec3 P, vec3 d) {
+    vec3 low = arc_block.walls_low.xyz, high = arc_block.walls_high.xyz;
+    vec3 times = (mix(low, high, greaterThan(d, vec3(0.0))) - P) / mix(d, vec3(1e-20), lessThan(abs(d), vec3(1e-20)));
+    vec3 from_middle = P + max(0.0, min(times.x, min(times.y, times.z))) * d - 0.5 * (low + high);
+    vec3 aside = from_middle / max(high - low, vec3(1e-12));
+    float most = max(abs(aside.x), max(abs(aside.y), abs(aside.z)));
+    return most > 1e-12 && most < 1e30 ? normalize(aside / most) : d;
+}
+
+// How open the outside is where nothing is known: linear between the numbers of the grid.
 float unknown_openness(vec3 P, vec3 d) { // upright axes, d unit
 #ifdef SUNS
     if (params.sun_openness >= 0.0) return params.sun_openness;
 #endif
-    vec3 wall = mix(arc_block.walls_low.xyz, arc_block.walls_high.xyz, greaterThan(d, vec3(0.0))) - P;
-    vec3 times = wall / mix(d, vec3(1e-20), lessThan(abs(d), vec3(1e-20)));
-    vec3 X = P + max(0.0, min(times.x, min(times.y, times.z))) * d;
-    vec3 c = X - 0.5 * (arc_block.walls_low.xyz + arc_block.walls_high.xyz);
-    d = normalize(c / max(arc_block.walls_high.xyz - arc_block.walls_low.xyz, vec3(1e-20)));
-    vec2 place = map_uv(d) * vec2(OPENNESS_COLUMNS, OPENNESS_ROWS + 1), low = floor(place), t = place - low;
-    int x = int(low.x), y = min(int(low.y), OPENNESS_ROWS);
+    vec2 place = map_uv(way_through_walls(P, d)) * vec2(OPENNESS_COLUMNS, OPENNESS_ROWS + 1), low = floor(place), t = place - low;
+    int x = int(low.x), y = clamp(int(low.y), 0, OPENNESS_ROWS);
     return mix(mix(stored_openness(y, x), stored_openness(y, x + 1), t.x),
                mix(stored_openness(y + 1, x), stored_openness(y + 1, x + 1), t.x), t.y);
 }

@@ -293,9 +293,8 @@ static bool measure_shot(job *j, int frame, error *e)
     bool ok = in && inputs_of_frame(j->o, frame, in) && frame_measure_shot(j, in->list, in->count, &j->shot, e);
     if (ok && j->o->radius_unit == RADIUS_AUTO)
         log_info(j->log, "radius: %g scene units for the whole sequence, from %s", j->shot.radius, in->list[0]);
-    if (ok && j->shot.roof >= 0.0)
-        log_info(j->log, "outside: %g open for the whole sequence, by the roof in %s", openness_mean(&j->shot.outside),
-                 in->list[0]);
+    if (ok && plan_asks_outside(j->o))
+        log_info(j->log, "outside: %g open for the whole sequence, from %s", openness_mean(&j->shot.outside), in->list[0]);
     j->is_shot = ok;
     free(in);
     return ok || err_set(e, ERR_USAGE, j->o->inputs[0], NULL, "the path of frame %d is too long", frame);

@@ -97,7 +97,7 @@ static bool estimate(const model *m, const openness *o, float *radiance, float *
     return filter_estimate(m->j, &m->r->lit, m->light, &p, &set, &m->r->planes, radiance, indirect, e);
 }
 
-// The box about what is seen, but for the outermost pixels.
+// The box about what is seen, but for the outermost 2 % on each side.
 static bool find_walls(const model *m, openness *o, error *e)
 {
     const gbuffer *g = &m->r->lit;
@@ -146,8 +146,8 @@ typedef struct normal_equations {
     double a[UNKNOWNS][UNKNOWNS], b[UNKNOWNS];
 } normal_equations;
 
-// Of a share: none to all. Of the bounce: that of one bounce, which a renderer may continue, and of which the picture shows a
-// part.
+// The bounds of a share are none and all. The bounce is a multiple of what one bounce sends: a renderer may make more than one,
+// and the frame shows only some of what sends.
 static double least(int k) { return k == BOUNCE ? 0.5 : 0.0; }
 static double most(int k) { return k == BOUNCE ? 3.0 : 1.0; }
 
@@ -235,9 +235,8 @@ static bool fit_with_bounce(model *m, const double prior[UNKNOWNS], shares *s, e
 // What is left of the picture's light may have at most this root mean square, over that of the light: what a black picture leaves
 // is 1.
 static const double MOST_LEFT = 0.9;
-// Nobody said that the environment lit the picture, and the picture shows no roof. Then its light must be explained well, and be
-// far below what the open sky would give: below the second of these shares the outside is taken to be as fitted, above the first
-// one to be open.
+// The same where nobody said that the environment lit the picture, and the picture shows no roof. Then it must be dark too: up to
+// the third of these shares of what the open sky would give, the outside is as fitted; from the second one on it is open.
 static const double MOST_LEFT_UNASKED = 0.5, MOST_LIGHT = 0.5, SURE_LIGHT = 0.25;
 
 // More than this many times what the open sky would give, bounces included, is not that sky's light.

@@ -177,7 +177,7 @@ bool plan_make(const options *o, const exrio_file *file, const resolution *r, pl
     if (in.emission && relit) p->need |= NEED_EMISSION;
     if (in.diffuse_direct && p->composite && !p->relight) p->need |= NEED_DIFFUSE_LIGHT;
     const char *unused = why_not_fitted(o, p, &in);
-    if (!unused) p->need_to_fit = NEED_ALBEDO | (in.diffuse_direct ? NEED_DIFFUSE_LIGHT : NEED_BEAUTY | NEED_EMISSION);
+    if (!unused) p->need_to_fit = in.diffuse_direct ? NEED_DIFFUSE_LIGHT : NEED_ALBEDO | NEED_BEAUTY | NEED_EMISSION;
     if (unused && o->beauty_env) log_warn(log, "beauty-env", "--beauty-env is not used: %s", unused);
     p->why_no_bounce = !in.albedo && p->relight ? "no albedo" : "no layer needs it";
     p->why_no_specular = !in.roughness ? "no roughness" : !in.env ? "no environment" : "no layer needs it";

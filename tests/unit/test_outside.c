@@ -272,6 +272,43 @@ static void a_closed_place_is_black(void **state)
     rig_close(&r);
 }
 
+// Where all directions are as open, the box that they are looked up in does not matter: not one without a width, not one about
+// the very point that looks, not one far away.
+static void any_box_will_do(void **state)
+{
+    (void)state;
+    enum { W = 48, H = 32 };
+    static rig r;
+    error e = {0};
+    gbuffer gb;
+    frame_result out;
+    float *usual = NULL;
+    scene s = {.eye = v3(0, 0, 2), .target = v3(0, 0.01, 0), .radius = 0.5};
+    scene_add_plane(&s, v3(0, 0, 0), v3(0, 0, 1), grey);
+    look(&s, W, H, 30.0, &gb);
+    must(rig_open(&r, &(env_options){.scale = 1.0}, &e), &e);
+    const vec3 seen = v3_add(gb.camera.origin, m3_apply(gb.camera.world_from_camera, gbuffer_position(&gb, W / 2, H / 2)));
+    const vec3 boxes[][2] = {{{-1, -1, -1}, {1, 1, 1}},
+                             {{-1, -1, 0}, {1, 1, 0}},
+                             {seen, seen},
+                             {{0, 0, 0}, {0, 0, 0}},
+                             {{1e25, 1e25, 1e25}, {2e25, 2e25, 2e25}},
+                             {{-1e25, -1e25, -1e25}, {1e25, 1e25, 1e25}}};
+    for (size_t b = 0; b < sizeof boxes / sizeof *boxes; b++) {
+        pass_settings set = rig_settings(method_find("arc"), 0.5);
+        set.planes = false, set.outside = openness_even(0.5);
+        set.outside.low = boxes[b][0], set.outside.high = boxes[b][1];
+        must(rig_run(&r, &gb, method_find("arc"), &set, 1 << LAYER_RADIANCE, &out, &e), &e);
+        if (b == 0) usual = out.layers[LAYER_RADIANCE], out.layers[LAYER_RADIANCE] = NULL;
+        for (int i = 0; b > 0 && i < 3 * W * H; i++)
+            assert_true(fabsf(out.layers[LAYER_RADIANCE][i] - usual[i]) < 1e-5f && usual[i] > 0.3f);
+        rig_free_result(&out);
+    }
+    free(usual);
+    gbuffer_free(&gb);
+    rig_close(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -281,6 +318,7 @@ int main(void)
         cmocka_unit_test(cracks_are_no_openings),
         cmocka_unit_test(light_comes_through_the_window),
         cmocka_unit_test(a_closed_place_is_black),
+        cmocka_unit_test(any_box_will_do),
         cmocka_unit_test(latlong_cameras_are_found),
         cmocka_unit_test(another_view_shows_the_window),
     };
