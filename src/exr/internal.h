@@ -51,10 +51,9 @@ bool core_log_report(core_log *log, exr_result_t code, error_code kind, const ch
 bool exrio_check_header(const char *path, int fd, size_t size, uint64_t *end, error *e);
 
 // For an open file whose parts are known: where a part's chunk table is all zero, as exrmultipart of OpenEXR 3.2 and later leaves
-// it, the chunks are looked up one after the other, once, and the library is given a table of them. A table is made only if every
-// chunk of the file is there, whole and once; else, and where a part is deep or has several levels, it stays as it is and the
-// file is refused when its pixels are read. False only when memory runs out or
-// the system refuses to read.
+// it, the chunks are looked up one after the other, once, and the library is given a table of them: of flat and deep parts, lines
+// and tiles, one level and several. A table is made only if every chunk of the file is there, whole and once; else it stays as it
+// is, and the file is refused when its pixels are read. False only when memory runs out or the system refuses to read.
 bool exrio_restore_tables(exrio_reader *r, error *e);
 
 // Fills the views of a part whose channels are known, and the view of each channel.

@@ -6,14 +6,21 @@
 #include "base/mem.h"
 #include "exr/internal.h"
 
-enum { ENTRY = 8, LEADER = 6 * 4 }; // bytes; a leader has at most a part number, four of a tile, and a size
+enum {
+    ENTRY = 8,              // bytes
+    LEADER = 5 * 4 + 3 * 8, // bytes at most: a part number, four of a tile, three sizes of a deep chunk
+    LEVELS = 17,            // of a side of EXRIO_MAX_SIDE pixels, down to 1
+};
 
 // How the chunks of a part are numbered.
 typedef struct part_table {
     size_t first, count; // entries in the file's tables, which stand one after the other
     int lines;           // of a scanline part's chunk; 0: tiles
-    uint32_t tiles_across;
+    bool deep;
     bool lost; // all of its entries are zero
+    exr_tile_level_mode_t mode;
+    int levels_x, levels_y;
+    uint32_t across[LEVELS], down[LEVELS]; // tiles, by level
 } part_table;
 
 typedef struct restorer {
@@ -37,6 +44,27 @@ static bool is_zero(const uint8_t *b, size_t n)
     return true;
 }
 
+static uint64_t u64_at(const uint8_t *b) { return u32_at(b) | (uint64_t)u32_at(b + 4) << 32; }
+
+// The number of tiles on each side of each level.
+static bool lay_out_tiles(exr_const_context_t core, int part, part_table *t)
+{
+    uint32_t width = 0, height = 0;
+    exr_tile_round_mode_t round;
+    if (exr_get_tile_descriptor(core, part, &width, &height, &t->mode, &round) != EXR_ERR_SUCCESS || width < 1 || height < 1 ||
+        exr_get_tile_levels(core, part, &t->levels_x, &t->levels_y) != EXR_ERR_SUCCESS || t->levels_x > LEVELS ||
+        t->levels_y > LEVELS)
+        return false;
+    for (int i = 0; i < t->levels_x || i < t->levels_y; i++) {
+        int32_t w = 1, h = 1; // of the level, in pixels; one side may have more levels than the other
+        int x = i < t->levels_x ? i : 0, y = i < t->levels_y ? i : 0;
+        if (exr_get_level_sizes(core, part, x, y, &w, &h) != EXR_ERR_SUCCESS || w < 1 || h < 1) return false;
+        t->across[i] = ((uint32_t)w - 1) / width + 1;
+        t->down[i] = ((uint32_t)h - 1) / height + 1;
+    }
+    return true;
+}
+
 // False: there is nothing to restore, or no way to.
 static bool lay_out(restorer *s)
 {
@@ -44,19 +72,14 @@ static bool lay_out(restorer *s)
     for (int i = 0; i < f->part_count; i++) {
         part_table *t = &s->parts[i];
         int32_t count = 0;
-        if (f->parts[i].deep || exr_get_chunk_count(f->core, i, &count) != EXR_ERR_SUCCESS || count < 1) return false;
-        t->first = s->count, t->count = (size_t)count;
+        if (exr_get_chunk_count(f->core, i, &count) != EXR_ERR_SUCCESS || count < 1) return false;
+        t->first = s->count, t->count = (size_t)count, t->deep = f->parts[i].deep;
         s->count += t->count;
-        if (!f->parts[i].tiled) {
-            if (exr_get_scanlines_per_chunk(f->core, i, &t->lines) != EXR_ERR_SUCCESS || t->lines < 1) return false;
-            continue;
+        if (f->parts[i].tiled) {
+            if (!lay_out_tiles(f->core, i, t)) return false;
+        } else if (exr_get_scanlines_per_chunk(f->core, i, &t->lines) != EXR_ERR_SUCCESS || t->lines < 1) {
+            return false;
         }
-        uint32_t width = 0, height = 0;
-        exr_tile_level_mode_t level;
-        exr_tile_round_mode_t round;
-        exr_result_t rv = exr_get_tile_descriptor(f->core, i, &width, &height, &level, &round);
-        if (rv != EXR_ERR_SUCCESS || level != EXR_TILE_ONE_LEVEL || width < 1) return false;
-        t->tiles_across = ((uint32_t)box2_width(f->parts[i].data_window) + width - 1) / width;
     }
     return s->r->tables <= s->r->size && s->count <= (s->r->size - s->r->tables) / ENTRY;
 }
@@ -91,6 +114,20 @@ static bool find_lost(restorer *s)
     return any;
 }
 
+// The number of a tile in its part: levels stand one after the other, those of a ripmap row by row.
+static bool tile_index(const part_table *t, const uint8_t *b, uint64_t *index)
+{
+    uint32_t x = u32_at(b), y = u32_at(b + 4), level_x = u32_at(b + 8), level_y = u32_at(b + 12);
+    uint32_t row = t->mode == EXR_TILE_RIPMAP_LEVELS ? (uint32_t)t->levels_x : 0; // 0: both sides shrink together
+    if (level_x >= (uint32_t)t->levels_x || level_y >= (uint32_t)t->levels_y || (!row && level_x != level_y) ||
+        x >= t->across[level_x] || y >= t->down[level_y])
+        return false;
+    *index = (uint64_t)y * t->across[level_x] + x;
+    for (uint32_t l = 0; l < level_y * row + level_x; l++)
+        *index += (uint64_t)t->across[row ? l % row : l] * t->down[row ? l / row : l];
+    return true;
+}
+
 // The entry of the chunk whose leader, after the part number, is `b`; NULL if there is no such chunk.
 static uint8_t *entry_of(const restorer *s, int part, const uint8_t *b)
 {
@@ -100,9 +137,8 @@ static uint8_t *entry_of(const restorer *s, int part, const uint8_t *b)
         int64_t y = (int64_t)(int32_t)u32_at(b) - s->r->file.parts[part].data_window.y0;
         if (y < 0 || y % t->lines) return NULL;
         index = (uint64_t)(y / t->lines);
-    } else {
-        if (u32_at(b) >= t->tiles_across || !is_zero(b + 8, 8)) return NULL;
-        index = (uint64_t)u32_at(b + 4) * t->tiles_across + u32_at(b);
+    } else if (!tile_index(t, b, &index)) {
+        return NULL;
     }
     return index < t->count ? s->entries + ENTRY * (t->first + index) : NULL;
 }
@@ -115,15 +151,20 @@ static bool take_chunk(restorer *s, uint64_t *at)
     size_t got = get(s, leader, LEADER, *at);
     uint32_t part = s->numbered ? u32_at(leader) : 0;
     if (part >= (uint32_t)s->r->file.part_count) return false;
-    const uint8_t *place = leader + (s->numbered ? 4 : 0), *size = place + (s->parts[part].lines ? 4 : 16);
-    size_t length = (size_t)(size + 4 - leader);
+    const part_table *t = &s->parts[part];
+    const uint8_t *place = leader + (s->numbered ? 4 : 0), *sizes = place + (t->lines ? 4 : 16);
+    size_t length = (size_t)(sizes - leader) + (t->deep ? 24 : 4);
     uint8_t *entry = entry_of(s, (int)part, place);
-    if (got < length || !entry || u32_at(size) > s->r->size - *at - length) return false;
-    if (s->parts[part].lost) {
+    if (got < length || !entry) return false;
+    // A deep chunk has a table of sample counts and samples, and tells what these are unpacked.
+    uint64_t counts = t->deep ? u64_at(sizes) : 0, data = t->deep ? u64_at(sizes + 8) : u32_at(sizes);
+    uint64_t left = s->r->size - *at - length;
+    if (counts > left || data > left - counts) return false;
+    if (t->lost) {
         if (!is_zero(entry, ENTRY)) return false; // it was there before
         for (int i = 0; i < ENTRY; i++) entry[i] = (uint8_t)(*at >> 8 * i);
     }
-    *at += length + u32_at(size);
+    *at += length + counts + data;
     return true;
 }
 
