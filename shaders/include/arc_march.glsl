@@ -125,9 +125,17 @@ void visit(inout Sectors sectors, inout Run run, Side s, Walk k, vec3 P, float a
     bool inside = squared < k.squared_radius, leaves = joined && run.last_squared < k.squared_radius;
     w_in = inside ? w : mix(run.last, w, (k.squared_radius - run.last_squared) / (squared - run.last_squared));
     counts = inside || leaves;
+#ifdef EVIDENCE
+    bool crosses = joined && run.last_squared < k.squared_radius;
+#endif
     run.last_squared = squared;
 #endif
     float c = share(s, w_in);
+#ifdef EVIDENCE
+    sectors.met |= crosses ? sectors_between(min(run.last_share, c), max(run.last_share, c), k.jitter) : uvec2(0u);
+    sectors.unseen |= surface ? beyond_on_ray(s, w, away(s, w, inversesqrt(dot(Q, Q))), k.squared_radius, k.jitter) : uvec2(0u);
+    run.last_share = c;
+#endif
 #ifdef BOUNCE
     block(sectors, joined ? sectors_between(min(run.last_share, c), max(run.last_share, c), k.jitter) : uvec2(0u), light);
     run.last_share = c;
@@ -194,6 +202,9 @@ void march(inout Sectors sectors, Side s, Line line, vec3 P, vec3 N, float step_
         visit(sectors, run, s, k, P, at, before);
         before = at;
     }
+#ifdef EVIDENCE
+    sectors.unseen |= beyond_frame(s, line, P, jitter);
+#endif
     go_on(sectors, run, s, k, before);
     finish(sectors, s, k, run, false, true);
 }

@@ -19,6 +19,9 @@ struct Sectors {
 #ifdef OUTSIDE
     uvec2 seen; // their directions pass through an opening behind which the picture shows nothing (outside.glsl)
 #endif
+#ifdef EVIDENCE
+    uvec2 met, unseen; // their directions meet a recorded surface; pass, within the radius, where the picture does not show (evidence.glsl)
+#endif
 };
 
 Sectors all_open() {
@@ -30,6 +33,9 @@ Sectors all_open() {
 #ifdef OUTSIDE
     s.seen = uvec2(0u);
 #endif
+#ifdef EVIDENCE
+    s.met = s.unseen = uvec2(0u);
+#endif
     return s;
 }
 
@@ -38,6 +44,10 @@ Sectors counted_from_the_other_end(Sectors s) {
     s.blocked = bitfieldReverse(s.blocked.yx);
 #ifdef OUTSIDE
     s.seen = bitfieldReverse(s.seen.yx);
+#endif
+#ifdef EVIDENCE
+    s.met = bitfieldReverse(s.met.yx);
+    s.unseen = bitfieldReverse(s.unseen.yx);
 #endif
     return s;
 }

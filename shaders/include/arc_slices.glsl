@@ -9,6 +9,9 @@
 #ifdef OUTSIDE
 #include "include/outside.glsl"
 #endif
+#ifdef EVIDENCE
+#include "include/evidence.glsl"
+#endif
 #ifdef RUNS
 #include "include/arc_march.glsl"
 #else

@@ -33,6 +33,9 @@ LAYER(SPECULAR, .name = "specular", .format = GL_RGBA32F, .channels = "RGB", .ra
 LAYER(DIFFUSE, .name = "diffuse", .format = GL_RGBA32F, .channels = "RGB", .range = RANGE_ANY, .display = DISPLAY_LIGHT)
 PASS_LAYER(DEPTHMASK, pass_depthmask, .name = "depthmask", .format = GL_R32F, .channels = "R", .range = RANGE_ANY,
            .display = DISPLAY_DARKENING)
+// Where there is no surface nothing is guessed.
+PASS_LAYER(CONFIDENCE, pass_confidence, .name = "confidence", .format = GL_R32F, .neutral = 1.0f, .channels = "R",
+           .range = RANGE_SHARE, .display = DISPLAY_SHARE)
 // The mean open direction of the cosine-weighted hemisphere, camera space: 2/3 long where all is open.
 LAYER(BENT, .name = "bent", .format = GL_RGBA32F, .resampled = AS_COLOUR, .groups = IMAGE_FILLED | IMAGE_BLOCKED, .word = "BENT",
       .slot = "bent_image", .channels = "XYZ", .range = RANGE_DIRECTION, .display = DISPLAY_SIGNED)
