@@ -16,10 +16,12 @@ void main() {
     uint normal = pack_normal(N);
 #ifdef PLANES
     vec3 P = position_of(p, depth);
+    float noise = pixel_hash(uvec2(p)).x; // a plane that is believed by half takes half of its pixels
     for (int i = 0; i < params.planes; i++) {
         vec4 equation = FETCH(planes_image, ivec2(PLANE_EQUATION, i));
         float margin = FETCH(planes_image, ivec2(PLANE_LIGHT, i)).w * (is_orthographic() ? 1.0 : depth);
-        if (abs(dot(equation.xyz, P) - equation.w) <= margin && dot(equation.xyz, N) >= 0.99) normal |= 1u << 31u;
+        float belief = FETCH(planes_image, ivec2(PLANE_BELIEF, i)).x;
+        if (noise < belief && abs(dot(equation.xyz, P) - equation.w) <= margin && dot(equation.xyz, N) >= 0.99) normal |= 1u << 31u;
     }
 #endif
     imageStore(surface_image, p, uvec4(floatBitsToUint(depth), normal, 0u, 0u));

@@ -88,6 +88,8 @@ void block_by_planes(inout Sectors sectors, Side s, vec3 V, vec3 across, float n
 #else
         vec3 sent = vec3(0.0);
 #endif
+        vec4 belief = FETCH(planes_image, ivec2(PLANE_BELIEF, i));
+        uint believed = uint(belief.y) | uint(belief.z) << 16u;
         vec2 edge = vec2(cos(from), sin(from)), turn = vec2(cos(width), sin(width)), part = vec2(cos(place * width), sin(place * width));
         float c = share_at(s, from, edge);
         for (int j = 0; j < chords; j++) {
@@ -97,7 +99,7 @@ void block_by_planes(inout Sectors sectors, Side s, vec3 V, vec3 across, float n
             vec3 X = P + height / dot(normal, d) * (d.x * V + d.y * across);
             vec2 here = vec2(dot(u.xyz, X) - u.w, dot(v.xyz, X) - v.w);
             bool blocks = stands(i, X, here, d.y > 0.0 ? goes_right : goes_left, margin);
-            block(sectors, blocks ? sectors_between(c, next, jitter) : uvec2(0u), sent);
+            block(sectors, blocks ? sectors_between(c, next, jitter) & believed : uvec2(0u), sent);
             c = next;
         }
     }

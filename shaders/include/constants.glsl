@@ -19,8 +19,9 @@
 #define PLANE_U 1        // dot(xyz, x) - w: place on the support's first axis, -1 .. 1
 #define PLANE_V 2
 #define PLANE_LIGHT 3    // rgb: mean of what its pixels send; w how far they may lie off it, negative for uneven ground
-#define PLANE_MASK 4     // 4 columns: 16 rows of 16 bits over the support: the picture does not show the plane to be absent there
-#define PLANE_COLUMNS 8
+#define PLANE_BELIEF 4   // x: how far the plane is believed in, 0 .. 1; y, z: the sectors that it may block, 16 bits each
+#define PLANE_MASK 5     // 4 columns: 16 rows of 16 bits over the support: the picture does not show the plane to be absent there
+#define PLANE_COLUMNS 9
 
 // The lat-long grid of how open the outside is (src/passes/openness.h): columns, a power of 2; rows between the poles; numbers, in
 // vectors of four.

@@ -92,11 +92,24 @@ arc_params arc_unlimited_params_of(const pass_context *c)
 
 _Static_assert(PLANE_COLUMNS == PLANE_MASK + PLANE_CELLS / 4 && MAX_SUNS == SUNS_MAX, "shaders/include/constants.glsl");
 
+// Which of 32 sectors a plane may block: the share that it is believed by, spread evenly.
+static uint32_t believed_sectors(double belief)
+{
+    uint32_t mask = 0;
+    for (int k = 0; k < 32; k++) {
+        int turned = (k & 1) << 4 | (k & 2) << 2 | (k & 4) | (k & 8) >> 2 | (k & 16) >> 4; // the five bits in reverse
+        if (turned < lround(32.0 * belief)) mask |= 1u << k;
+    }
+    return mask;
+}
+
 static void put_plane(float row[PLANE_COLUMNS][4], const plane *p, bool uneven)
 {
     arc_put(row[PLANE_EQUATION], p->normal, p->offset);
     for (int i = 0; i < 2; i++) arc_put(row[PLANE_U + i], v3_scale(p->axis[i], 1.0 / p->extent[i]), p->centre[i] / p->extent[i]);
     arc_put(row[PLANE_LIGHT], v3(0, 0, 0), uneven ? -p->margin : p->margin);
+    uint32_t sectors = believed_sectors(p->belief);
+    arc_put(row[PLANE_BELIEF], v3(p->belief, sectors & 0xffff, sectors >> 16), 0);
     for (int y = 0; y < PLANE_CELLS; y++) row[PLANE_MASK + y / 4][y % 4] = (float)p->cells[y];
 }
 

@@ -9,12 +9,22 @@
 enum { SAMPLES = 4096, HYPOTHESES = 64, SCORED = 1024, REFINEMENTS = 2, TURNS = 18 };
 
 // A sample lies on a plane if it is nearer to it than DISTANCE (a share of its depth) and if the cosine between the normals is at
-// least COSINE (8 degrees). A plane must hold at least the share SMALLEST of all surfaces. Uneven ground has limits of its own
-// (37 degrees).
+// least COSINE (8 degrees). Uneven ground has limits of its own (37 degrees).
 static const double DISTANCE = 0.002, UNEVEN_DISTANCE = 0.05;
 static const double COSINE = 0.9902681, UNEVEN_COSINE = 0.8;
-static const double SMALLEST = 0.02, UNEVEN_SMALLEST = 0.2;
-static const double CONTRADICTED = 3.0; // samples seen through a plane, over samples on it; above this the plane is refused
+
+// Belief in a plane goes from none to full over a range: at a limit, a plane would come and go from one frame of a shot to the
+// next.
+typedef struct range {
+    double from, to;
+} range;
+
+static const double THINNEST = 1e-3; // width over length of the support
+
+static const range HELD = {0.01, 0.03}, UNEVEN_HELD = {0.2, 0.3}; // share of all surfaces that the plane holds: more is better
+static const range THROUGH = {2.0, 4.0};                          // samples seen through it over samples on it: less is better
+
+static double along(range r, double x) { return fmin(fmax((x - r.from) / (r.to - r.from), 0.0), 1.0); }
 
 typedef struct surface {
     vec3 p, n;
@@ -144,6 +154,8 @@ static void support(const finder *f, plane *p)
             p->centre[k] = 0.5 * (low[k] + high[k]), p->extent[k] = 0.5 * (high[k] - low[k]);
         }
     }
+    // Samples on one line leave a strip without width, by which nothing can be divided.
+    for (int k = 0; k < 2; k++) p->extent[k] = fmax(p->extent[k], THINNEST * p->extent[1 - k]);
 }
 
 // Moves the samples that the plane holds behind the remaining ones. Returns their number.
@@ -195,17 +207,20 @@ static int fill_cells(const finder *f, plane *p)
     return through;
 }
 
-// Finds the next plane among the samples that no plane has taken. Returns how many it takes; 0 if they are too few.
-static int find_plane(finder *f, double smallest, plane *p)
+// Finds the next plane among the samples that no plane has taken. Returns how many it takes; 0 if they are too few to be
+// believed.
+static int find_plane(finder *f, range held, plane *p)
 {
-    if (f->count <= smallest * f->total || f->count < 8) return 0;
+    if (f->count <= held.from * f->total || f->count < 8) return 0;
     *p = best_hypothesis(f);
     for (int i = 0; i < REFINEMENTS; i++) refine(f, p);
     support(f, p);
     int n = take(f, p);
     p->margin = f->distance;
     p->share = (double)n / f->total;
-    return n < smallest * f->total ? 0 : n;
+    p->belief = along(held, p->share);
+    if (p->belief > 0.0) p->belief *= 1.0 - along(THROUGH, (double)fill_cells(f, p) / n);
+    return p->share > held.from ? n : 0;
 }
 
 bool planes_find(const gbuffer *gb, plane_set *out, error *e)
@@ -220,16 +235,16 @@ bool planes_find(const gbuffer *gb, plane_set *out, error *e)
     plane p;
     int n = 1;
     for (int tried = 0; n > 0 && tried < 2 * PLANES_MAX && out->count < PLANES_MAX; tried++) {
-        n = find_plane(&f, SMALLEST, &p);
-        if (n > 0 && fill_cells(&f, &p) <= CONTRADICTED * n) out->planes[out->count++] = p;
+        n = find_plane(&f, HELD, &p);
+        if (n > 0 && p.belief > 0.0) out->planes[out->count++] = p;
     }
     // Uneven ground is looked for among all samples that no accepted plane holds. Samples of refused planes are among them.
     f.count = f.total;
     for (int i = 0; i < out->count; i++) take(&f, &out->planes[i]);
     f.distance = UNEVEN_DISTANCE;
     f.cosine = UNEVEN_COSINE;
-    n = find_plane(&f, UNEVEN_SMALLEST, &p);
-    if (n > 0 && fill_cells(&f, &p) <= CONTRADICTED * n) out->planes[out->count] = p, out->uneven = 1;
+    n = find_plane(&f, UNEVEN_HELD, &p);
+    if (n > 0 && p.belief > 0.0) out->planes[out->count] = p, out->uneven = 1;
     out->samples = f.total;
     out->found = true;
     if (f.orthographic)

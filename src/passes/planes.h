@@ -18,6 +18,7 @@ typedef struct plane {
     vec3 normal, axis[2];
     double offset, centre[2], extent[2];
     double share;  // of the frame's surfaces
+    double belief; // 0 .. 1; the plane blocks this share of the directions that it meets
     double margin; // how far off the plane a surface may lie: a share of its depth; with an orthographic camera a length
     unsigned short cells[PLANE_CELLS];
 } plane;
@@ -29,9 +30,9 @@ typedef struct plane_set {
     double samples;    // surface samples that were looked at
 } plane_set;
 
-// Finds the planes, largest first. Each holds at least 2 % of the surfaces. Then looks for uneven ground among the other
-// surfaces: those within 5 % of their depth of one plane and within 37 degrees of its normal. They must be at least a fifth of
-// all surfaces.
+// Finds the planes, largest first. Then looks for uneven ground among the other surfaces: those within 5 % of their depth of one
+// plane and within 37 degrees of its normal. Belief in a plane is none at 1 % of the surfaces and full at 3 % (uneven ground: 20
+// and 30 %), and less where the picture shows other surfaces through it. Planes without belief are left out.
 bool planes_find(const gbuffer *gb, plane_set *out, error *e);
 
 #endif

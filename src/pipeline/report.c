@@ -168,6 +168,7 @@ static json_object *planes_of(const frame_result *r)
         json_put(o, "normal", normal);
         json_put_number(o, "offset", p->offset);
         json_put_number(o, "share", p->share);
+        json_put_number(o, "belief", p->belief);
         json_put(o, "uneven", json_object_new_boolean(i == r->planes.count));
         json_object_array_add(list, o);
     }

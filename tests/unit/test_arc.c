@@ -132,6 +132,47 @@ static void uneven_ground_is_told_from_planes(void **state)
     assert_int_equal(rugged.uneven, 0);
 }
 
+// A wall of 200 x 150 pixels, and a patch of w x h pixels that is parallel to it and stands before it.
+static plane_set patch(int w, int h)
+{
+    scene s = {0};
+    scene_tilted_plane(&s, 0.0, 10.0);
+    view v = view_perspective(200, 150, 40.0, 1.0);
+    gbuffer gb;
+    error e = {0};
+    plane_set found;
+    must(scene_gbuffer(&s, &v, &gb, &e), &e);
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) gb.depth[(y + 75 - h / 2) * gb.width + x + 100 - w / 2] *= 0.8f;
+    must(planes_find(&gb, &found, &e), &e);
+    gbuffer_free(&gb);
+    return found;
+}
+
+static void belief_grows_with_the_plane(void **state)
+{
+    (void)state;
+    double last = 0.0, jump = 0.0;
+    for (int w = 6; w <= 100; w++) {
+        plane_set found = patch(w, 14);
+        double now = found.count > 1 ? found.planes[1].belief : 0.0;
+        assert_true(found.planes[0].belief == 1.0 && now >= last);
+        jump = fmax(jump, now - last);
+        last = now;
+    }
+    assert_true(last == 1.0);
+    assert_true(jump < 0.1);
+}
+
+static void a_line_of_samples_has_a_width(void **state)
+{
+    (void)state;
+    plane_set found = patch(200, 1);
+    assert_int_equal(found.count, 2);
+    const double *extent = found.planes[1].extent;
+    assert_true(fmin(extent[0], extent[1]) > 0.0 && fmin(extent[0], extent[1]) < 0.01 * fmax(extent[0], extent[1]));
+}
+
 // A box on the ground, the camera above it: from the far side of the ground nothing of the box's back is seen, and nothing but
 // the ground is a large plane. With a wall that the box hides in part, the wall's plane must darken what it may darken only.
 static void planes_never_touch_an_empty_plane(void **state)
@@ -282,7 +323,8 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(arc_agrees_with_closed_forms),      cmocka_unit_test(planes_are_found_where_they_are),
-        cmocka_unit_test(uneven_ground_is_told_from_planes), cmocka_unit_test(planes_never_touch_an_empty_plane),
+        cmocka_unit_test(uneven_ground_is_told_from_planes), cmocka_unit_test(belief_grows_with_the_plane),
+        cmocka_unit_test(a_line_of_samples_has_a_width),     cmocka_unit_test(planes_never_touch_an_empty_plane),
         cmocka_unit_test(a_plane_goes_on_beyond_the_frame),  cmocka_unit_test(bounce_is_bounded),
         cmocka_unit_test(one_march_makes_the_layers_of_two),
     };
