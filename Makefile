@@ -31,7 +31,7 @@ PKGS       := OpenEXR epoxy egl libdeflate json-c
 # Looked up only when something is compiled, so that `make deps` works on a machine that has none of it.
 PKG_CFLAGS  = $(shell pkg-config --cflags $(PKGS) | sed 's/-I/-isystem /g')
 # Headers and libraries come from the same place: pkg-config names both, and a library outside the system's folders is found there at
-# run time too. OpenEXR's C++ libraries, which are not used, are not linked.
+# run time too. OpenEXR's C++ libraries, which the program does not use, are not linked.
 RPATHS      = $(patsubst -L%,-Wl$(comma)-rpath$(comma)%,$(shell pkg-config --libs-only-L $(1)))
 comma      := ,
 LIBS        = -Wl,--as-needed $(shell pkg-config --libs $(PKGS)) $(call RPATHS,$(PKGS)) -lpthread -ldl -lm
@@ -62,7 +62,7 @@ BIN      := $(BUILD)/ssdo-filter
 # The library, src/ssdo.h: the rooms as one object that shows nothing but ssdo_*.
 SONAME   := libssdo.so.$(shell sed -n 's/^.define SSDO_INTERFACE //p' src/ssdo.h)
 LIBRARY_FILES := $(BUILD)/lib/$(SONAME) $(BUILD)/lib/libssdo.so $(BUILD)/lib/libssdo.a
-PLUGIN   := $(BUILD)/ssdo-images.so $(BUILD)/ssdo-colour.so $(BUILD)/ssdo-trace.so
+PLUGIN   := $(BUILD)/ssdo-dwa.so $(BUILD)/ssdo-images.so $(BUILD)/ssdo-colour.so $(BUILD)/ssdo-trace.so
 UNIT     := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/test_*.c))
 REPLAY   := $(patsubst tests/fuzz/%.c,$(BUILD)/tests/%,$(wildcard tests/fuzz/fuzz_*.c))
 TESTLIB  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/lib/*.c))
@@ -158,7 +158,8 @@ $(BUILD)/decides.c: $(DECIDES) src/pipeline/decides.sh Makefile
 $(BUILD)/decides.o: $(BUILD)/decides.c src/pipeline/decides.h $(BUILD)/flags
 	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $< $(KEEP_WARNINGS)
 
-# OpenImageIO, OpenColorIO and Embree live in modules of their own, opened on demand: linking OpenImageIO costs every run 290 ms.
+# The C++ libraries live in modules of their own, opened on demand: linking OpenImageIO costs every run 290 ms.
+$(BUILD)/ssdo-dwa.so: LIBRARY = -Wl,--as-needed $$(pkg-config --cflags --libs OpenEXR | sed 's/-I/-isystem /g') $(call RPATHS,OpenEXR)
 $(BUILD)/ssdo-images.so: LIBRARY = $$(pkg-config --cflags --libs OpenImageIO) $(call RPATHS,OpenImageIO)
 $(BUILD)/ssdo-colour.so: LIBRARY = $$(pkg-config --cflags --libs OpenColorIO) $(call RPATHS,OpenColorIO)
 $(BUILD)/ssdo-trace.so: LIBRARY = $(EMBREE)

@@ -17,7 +17,11 @@ static void keep_message(exr_const_context_t context, exr_result_t code, const c
     void *user = NULL;
     // Safe only for reading: a writing context would lock itself a second time here.
     if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user) return;
-    core_log *log = &((exrio_reader *)user)->log;
+    core_log_keep(&((exrio_reader *)user)->log, message);
+}
+
+void core_log_keep(core_log *log, const char *message)
+{
     pthread_mutex_lock(&log->lock);
     if (log->armed && !log->text[0]) {
         strncpy(log->text, message, sizeof log->text - 1);
@@ -84,18 +88,27 @@ static void put_restored(const exrio_reader *r, uint8_t *bytes, uint64_t got, ui
     if (from < to) memcpy(bytes + (from - offset), r->restored + (from - r->tables), to - from);
 }
 
+size_t exrio_read_bytes(exrio_reader *r, void *buffer, size_t size, uint64_t offset)
+{
+    size_t got = infile_read_at(r->fd, buffer, size, offset);
+    int refused = errno;
+    if (r->restored) put_restored(r, buffer, got, offset);
+    if (refused) {
+        pthread_mutex_lock(&r->log.lock);
+        if (!r->log.refused) r->log.refused = refused;
+        pthread_mutex_unlock(&r->log.lock);
+    }
+    errno = refused;
+    return got;
+}
+
 static int64_t read_bytes(exr_const_context_t context, void *user, void *buffer, uint64_t size, uint64_t offset,
                           exr_stream_error_func_ptr_t report)
 {
-    exrio_reader *r = user;
-    size_t got = infile_read_at(r->fd, buffer, size, offset);
-    hide_deep_flag(buffer, got, offset);
-    if (r->restored) put_restored(r, buffer, got, offset);
+    size_t got = exrio_read_bytes(user, buffer, size, offset);
     int refused = errno;
+    hide_deep_flag(buffer, got, offset);
     if (!refused) return (int64_t)got; // the library knows what it needs
-    pthread_mutex_lock(&r->log.lock);
-    if (!r->log.refused) r->log.refused = refused;
-    pthread_mutex_unlock(&r->log.lock);
     report(context, EXR_ERR_READ_IO, "%s", strerror(refused));
     return -1;
 }

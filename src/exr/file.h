@@ -1,7 +1,7 @@
 // An OpenEXR file in memory: headers of all parts, and the pixels of the channels that were asked for.
 //
-// Reading goes through OpenEXRCore; parts compressed with DWAA/DWAB, which OpenEXRCore 3.1.5 cannot decode, go through the
-// OpenImageIO module (plugin/images.h), opened on demand. Single and multi-part, scanline and tiled (level 0 only), any line
+// Reading goes through OpenEXRCore; pixels compressed with DWAA/DWAB, where it does not decode them (exr/library.h), through a
+// module (plugin/dwa.h), opened on demand. Single and multi-part, scanline and tiled (level 0 only), any line
 // order, half/float/uint. Subsampled channels are refused with ERR_INPUT, and so is a file
 // that holds deep parts only; a deep part beside a flat one can be copied, and is not looked into. Samples keep their stored type
 // and bits: nothing is converted, so that what is passed through is unchanged. All sizes in the header are checked before memory

@@ -41,6 +41,8 @@ typedef struct exrio_reader {
 } exrio_reader;
 
 void core_log_arm(core_log *log);
+// The first message while armed.
+void core_log_keep(core_log *log, const char *message);
 // Stops listening and reports `code`: an allocation failure as ERR_MEMORY, a read that the system refused by its
 // number, anything else as `kind` with `what` in front of the library's own words. Returns false.
 bool core_log_report(core_log *log, exr_result_t code, error_code kind, const char *path, const char *what, error *e);
@@ -55,6 +57,10 @@ bool exrio_check_header(const char *path, int fd, size_t size, uint64_t *end, er
 // and tiles, one level and several. A table is made only if every chunk of the file is there, whole and once; else it stays as it
 // is, and the file is refused when its pixels are read. False only when memory runs out or the system refuses to read.
 bool exrio_restore_tables(exrio_reader *r, error *e);
+
+// The file's bytes from `offset` on, as they are but for tables that were restored; returns how many there are. Where the system
+// refuses, errno and the log have its number; else errno is 0.
+size_t exrio_read_bytes(exrio_reader *r, void *buffer, size_t size, uint64_t offset);
 
 // Fills the views of a part whose channels are known, and the view of each channel.
 bool exrio_fill_views(const exrio_file *file, int index, exrio_part *p, error *e);

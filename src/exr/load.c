@@ -6,12 +6,14 @@
 #include "exr/codec.h"
 #include "exr/internal.h"
 #include "exr/library.h"
-#include "plugin/images.h"
+#include "plugin/dwa.h"
+#include "plugin/module.h"
 
 typedef struct load_worker {
     exr_decode_pipeline_t pipeline;
     bool ready; // pipeline is initialised
     codec codec;
+    void *dwa; // the module's decoder
 } load_worker;
 
 typedef struct load_job {
@@ -23,6 +25,8 @@ typedef struct load_job {
     int tile_width, tile_height, tiles_across; // scanline parts: the whole width, lines per chunk, 1
     load_worker *workers;
     bool *fresh;          // by channel: this load brings it
+    dwa_module dwa;       // where the library does not decode the part
+    dwa_source source;    // what it reads
     pthread_mutex_t lock; // of error
     error *error;
 } load_job;
@@ -146,6 +150,52 @@ static bool take_memory(load_job *j)
     return true;
 }
 
+// --- what the library does not decode ---
+
+static size_t read_source(void *context, void *to, size_t n, uint64_t offset) { return exrio_read_bytes(context, to, n, offset); }
+
+static bool check_dwa(load_job *j, dwa_result result, const char *message)
+{
+    if (result == DWA_OK) return true;
+    core_log_keep(log_of(j), message);
+    return fail(j, result == DWA_MEMORY ? EXR_ERR_OUT_OF_MEMORY : EXR_ERR_CORRUPT_CHUNK);
+}
+
+// The channels that this load brings; returns how many.
+static int list_dwa_channels(const load_job *j, dwa_channel *out)
+{
+    int count = 0;
+    for (int i = 0; i < j->part->channel_count; i++) {
+        const exrio_channel *c = &j->part->channels[i];
+        if (j->fresh[i]) out[count++] = (dwa_channel){c->stored ? c->stored : c->name, (int)c->type, c->data};
+    }
+    return count;
+}
+
+// One row of chunks.
+static bool decode_row(void *context, size_t item, int worker)
+{
+    load_job *j = context;
+    load_worker *w = &j->workers[worker];
+    const box2 window = j->part->data_window;
+    const dwa_part part = {j->index, window.x0, window.y0, window.x1, window.y1};
+    int first = window.y0 + (int)item * j->tile_height, last = first + j->tile_height - 1;
+    char message[MODULE_MESSAGE] = "";
+    dwa_channel channels[EXRIO_MAX_CHANNELS];
+    if (!w->dwa && !check_dwa(j, j->dwa.open(&j->source, &part, &w->dwa, message, sizeof message), message)) return false;
+    int count = list_dwa_channels(j, channels);
+    return check_dwa(
+        j, j->dwa.decode(w->dwa, channels, count, first, last < window.y1 ? last : window.y1, message, sizeof message), message);
+}
+
+// --- a part ---
+
+static bool decode_all(load_job *j, int threads)
+{
+    size_t rows = j->chunk_count / (size_t)j->tiles_across;
+    return j->dwa.open ? threads_for(threads, rows, decode_row, j) : threads_for(threads, j->chunk_count, decode_chunk, j);
+}
+
 static bool decode_part(load_job *j, int threads)
 {
     bool ok = false;
@@ -157,43 +207,14 @@ static bool decode_part(load_job *j, int threads)
     j->chunks = mem_zero(j->chunk_count, sizeof *j->chunks, j->error);
     j->workers = mem_zero((size_t)threads, sizeof *j->workers, j->error);
     if (j->chunks && j->workers && threads_for(threads, j->chunk_count, find_chunk, j) && take_memory(j))
-        ok = threads_for(threads, j->chunk_count, decode_chunk, j);
+        ok = decode_all(j, threads);
     for (int i = 0; j->workers && i < threads; i++) {
         if (j->workers[i].ready) exr_decoding_destroy(j->file->core, &j->workers[i].pipeline);
+        if (j->workers[i].dwa) j->dwa.close(j->workers[i].dwa);
         codec_free(&j->workers[i].codec);
     }
     free(j->workers);
     free(j->chunks);
-    return ok;
-}
-
-// What the library does not decode: by the OpenImageIO module.
-static bool decode_by_module(load_job *j)
-{
-    exrio_part *p = j->part;
-    size_t n = (size_t)p->channel_count;
-    bool ok = false;
-    const char **names = mem_zero(n, sizeof *names, j->error);
-    int *types = mem_zero(n, sizeof *types, j->error);
-    void **data = mem_zero(n, sizeof *data, j->error);
-    if (!names || !types || !data) goto out;
-    for (size_t i = 0; i < n; i++) {
-        types[i] = (int)p->channels[i].type;
-        if (p->channels[i].wanted && !p->channels[i].data)
-            names[i] = p->channels[i].stored ? p->channels[i].stored : p->channels[i].name;
-    }
-    ok = images_read_exr_native(j->file->path, j->index, box2_width(p->data_window), box2_height(p->data_window),
-                                p->channel_count, names, types, data, j->error);
-    for (size_t i = 0; ok && i < n; i++) {
-        if (!names[i]) continue;
-        p->channels[i].data = data[i];
-        j->fresh[i] = true;
-    }
-
-out:
-    free(names);
-    free(types);
-    free(data);
     return ok;
 }
 
@@ -204,9 +225,11 @@ static bool load_part(exrio_file *file, int index, int threads, bool *fresh, err
     if (p->deep) return true;
     for (int i = 0; i < p->channel_count; i++) any |= p->channels[i].wanted && !p->channels[i].data;
     if (!any) return true;
-    load_job j = {.file = file, .index = index, .part = p, .fresh = fresh, .error = e};
+    exrio_reader *r = (exrio_reader *)file;
+    load_job j = {.file = file, .index = index, .part = p, .fresh = fresh, .error = e, .source = {r, r->size, read_source}};
+    if (!exrio_library_decodes(p->compression) && !dwa_module_open(file->path, &j.dwa, e)) return false;
     pthread_mutex_init(&j.lock, NULL);
-    bool ok = exrio_library_decodes(p->compression) ? decode_part(&j, threads) : decode_by_module(&j);
+    bool ok = decode_part(&j, threads);
     pthread_mutex_destroy(&j.lock);
     return ok;
 }

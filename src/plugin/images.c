@@ -19,17 +19,6 @@ bool images_read_rows(const char *path, int part, images_take_fn take, void *con
     return err_set(e, ERR_INPUT, path, NULL, "cannot be read as an image: %s; check the file or convert it to EXR", message);
 }
 
-bool images_read_exr_native(const char *path, int part, int width, int height, int count, const char *const *names,
-                            const int *types, void **data, error *e)
-{
-    char message[MODULE_MESSAGE] = "";
-    images_read_native_fn read = (images_read_native_fn)module_function(
-        &images, "ssdo_images_read_native", "reading DWAA or DWAB compression (ZIP needs no module)", ERR_INPUT, path, e);
-    if (!read) return false;
-    if (read(path, part, width, height, count, names, types, data, message, sizeof message)) return true;
-    return err_set(e, ERR_INPUT, path, NULL, "is truncated or damaged: %s; render it or copy it again", message);
-}
-
 static images_encode_png_fn png_encoder(const char *path, error *e)
 {
     return (images_encode_png_fn)module_function(&images, "ssdo_images_encode_png", "writing a PNG", ERR_OUTPUT, path, e);

@@ -12,8 +12,6 @@
 typedef int (*images_take_fn)(void *context, int width, int height, int channels, int y, int rows, const float *pixels);
 typedef int (*images_read_rows_fn)(const char *path, int part, images_take_fn take, void *context, char *message,
                                    size_t message_size);
-typedef int (*images_read_native_fn)(const char *path, int part, int width, int height, int count, const char *const *names,
-                                     const int *types, void **data, char *message, size_t message_size);
 // A PNG file in *bytes. label: a text that it carries as `key`.
 typedef int (*images_encode_png_fn)(int width, int height, const uint8_t *rgb, const char *key, const char *label, void **bytes,
                                     size_t *size, char *message, size_t message_size);

@@ -5,7 +5,6 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -68,12 +67,6 @@ std::unique_ptr<ImageInput> open_part(const char *path, int part)
     return in;
 }
 
-void read_all(ImageInput &in, int part, TypeDesc type, void *to)
-{
-    if (!in.read_image(part, 0, 0, in.spec().nchannels, type, to))
-        throw std::runtime_error(reason(in.geterror(), "its pixels cannot be read"));
-}
-
 // Rows [y, end) of the data window as float; of a tiled file, whole rows of tiles.
 void read_band(ImageInput &in, int part, int y, int end, float *to)
 {
@@ -99,45 +92,6 @@ bool read_rows(const char *path, int part, images_take_fn take, void *context)
         if (!take(context, spec.width, spec.height, spec.nchannels, y, end - y, rows)) return false;
     }
     return true;
-}
-
-TypeDesc stored_type(int sample_type) // OpenEXR's numbers
-{
-    return sample_type == 0 ? TypeDesc::UINT32 : sample_type == 1 ? TypeDesc::HALF : TypeDesc::FLOAT;
-}
-
-// Takes channel c of interleaved pixels out. `size` is the bytes of its samples.
-memory extract(const std::vector<char> &pixels, size_t count, size_t stride, size_t offset, size_t size)
-{
-    memory plane = allocate(count * size);
-    const char *from = pixels.data() + offset;
-    char *to = static_cast<char *>(plane.get());
-    for (size_t i = 0; i < count; i++) std::memcpy(to + i * size, from + i * stride, size);
-    return plane;
-}
-
-void read_native(const char *path, int part, int width, int height, int count, const char *const *names, const int *types,
-                 void **data)
-{
-    auto in = open_part(path, part);
-    const ImageSpec spec = in->spec();
-    // Whoever called has seen the file before, and takes memory of this size for granted.
-    if (spec.width != width || spec.height != height)
-        throw std::runtime_error("it became " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-                                 " pixels while it was read");
-    const size_t n = size_t(spec.width) * size_t(spec.height), stride = spec.pixel_bytes(true);
-    std::vector<char> pixels(n * stride);
-    read_all(*in, part, TypeDesc::UNKNOWN, pixels.data()); // UNKNOWN: as stored
-    std::vector<memory> planes(count);
-    for (int i = 0; i < count; i++) {
-        if (!names[i]) continue;
-        const int c = spec.channelindex(names[i]);
-        if (c < 0) throw std::runtime_error(std::string("channel ") + names[i] + " is not there");
-        const TypeDesc type = spec.channelformat(c);
-        if (type != stored_type(types[i])) throw std::runtime_error(std::string("channel ") + names[i] + " changed its type");
-        planes[i] = extract(pixels, n, stride, spec.pixel_bytes(0, c, true), type.size());
-    }
-    for (int i = 0; i < count; i++) data[i] = planes[i].release();
 }
 
 // To memory: the library's own file writer does not tell when a disk is full.
@@ -166,12 +120,6 @@ EXPORT int ssdo_images_read_rows(const char *path, int part, images_take_fn take
 {
     bool whole = false;
     return guarded(message, message_size, [&] { whole = read_rows(path, part, take, context); }) && whole;
-}
-
-EXPORT int ssdo_images_read_native(const char *path, int part, int width, int height, int count, const char *const *names,
-                                   const int *types, void **data, char *message, size_t message_size)
-{
-    return guarded(message, message_size, [&] { read_native(path, part, width, height, count, names, types, data); });
 }
 
 EXPORT int ssdo_images_encode_png(int width, int height, const uint8_t *rgb, const char *key, const char *label, void **bytes,

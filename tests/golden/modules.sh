@@ -21,6 +21,11 @@ else
     grep -q '^ssdo-filter: *position\|pass .* runs' "$dir/said" && die "work was done first: $(cat "$dir/said")"
 fi
 
+# DWA, in the input and in the environment, needs no OpenImageIO.
+if [ -e "$(dirname "$SSDO")/ssdo-dwa.so" ]; then cp "$(dirname "$SSDO")/ssdo-dwa.so" "$dir/bin"; fi
+oiiotool "$in" --compression dwaa -o "$dir/dwa.exr" && oiiotool samples/sky_sun.exr --compression dwab -o "$dir/sky.exr" || die "oiiotool --compression"
+"$dir/bin/ssdo-filter" -v "$dir/dwa.exr" -o "$dir/out.exr" --env "$dir/sky.exr" --samples 4 --radius 1 2>"$dir/said" || die "DWA without OpenImageIO: $(cat "$dir/said")"
+
 said() { sed 's/: [0-9.]* s$//; s/in [0-9.]* s//' "$dir/$1" | grep -v '^frame 1 (1 of 1)\|^ssdo-filter: 100 %\|whole sequence' | sort; }
 "$SSDO" -v "$in" -o "$dir/alone.exr" --samples 4 --radius 1 --progress none 2>"$dir/alone" || die "alone"
 "$SSDO" -v "$dir/in.####.exr" -o "$dir/many.####.exr" --samples 4 --radius 1 --progress none 2>"$dir/many" >/dev/null || die "sequence"

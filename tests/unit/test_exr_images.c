@@ -75,32 +75,6 @@ static void test_failures(void **state)
     assert_int_equal(e.code, ERR_INPUT);
 }
 
-static void test_missing_part_or_channel(void **state)
-{
-    (void)state;
-    if (!have_module()) return;
-    image im;
-    error e = {0};
-    make_image(&im, 9, 4, 3, true);
-    assert_ok(exrio_write(in_scratch("i.exr"), &im.part, 1, 1, &e), e);
-    const char *const names[] = {"normal.X", NULL, "id"};
-    const int types[] = {SAMPLE_FLOAT, SAMPLE_HALF, SAMPLE_UINT};
-    void *data[3];
-    assert_ok(images_read_exr_native(in_scratch("i.exr"), 0, 9, 4, 3, names, types, data, &e), e);
-    assert_memory_equal(data[0], im.channels[6].data, 9 * 4 * 4);
-    assert_null(data[1]);
-    assert_memory_equal(data[2], im.channels[3].data, 9 * 4 * 4);
-    free(data[0]);
-    free(data[2]);
-    assert_false(images_read_exr_native(in_scratch("i.exr"), 1, 9, 4, 3, names, types, data, &e));
-    assert_int_equal(e.code, ERR_INPUT);
-    e = (error){0};
-    const char *const wrong[] = {"normal.X", "none", NULL};
-    assert_false(images_read_exr_native(in_scratch("i.exr"), 0, 9, 4, 3, wrong, types, data, &e));
-    assert_non_null(strstr(e.message, "none"));
-    free_image(&im);
-}
-
 static void test_without_the_module(void **state)
 {
     (void)state;
@@ -143,8 +117,9 @@ static void test_broken_module(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_png_there_and_back),      cmocka_unit_test(test_failures),
-        cmocka_unit_test(test_missing_part_or_channel), cmocka_unit_test(test_without_the_module),
+        cmocka_unit_test(test_png_there_and_back),
+        cmocka_unit_test(test_failures),
+        cmocka_unit_test(test_without_the_module),
         cmocka_unit_test(test_broken_module),
     };
     return cmocka_run_group_tests(tests, set_up, remove_scratch);

@@ -5,6 +5,7 @@
 #include <openexr.h>
 
 #include "exr/compare.h"
+#include "modules.h"
 
 enum { WIDTH = 9, HEIGHT = 40, LINES = 16, TILE = 4 };
 
@@ -111,6 +112,20 @@ static void test_tiles(void **state)
     assert_ok(exrio_write(in_scratch("plain.exr"), &im.part, 1, 1, &e), e);
     assert_int_equal(run_command("oiiotool '%s' --tile 16 16 -o '%s'", in_scratch("plain.exr"), in_scratch("tiled.exr")), 0);
     check_without_tables(in_scratch("tiled.exr"), (HEIGHT + LINES - 1) / LINES, 16);
+    free_image(&im);
+}
+
+// Where a module decodes, it is given the tables too.
+static void test_dwa(void **state)
+{
+    (void)state;
+    image im;
+    error e = {0};
+    if (!have_tool("oiiotool")) skip();
+    make_image(&im, WIDTH, HEIGHT, EXR_COMPRESSION_ZIP, false);
+    assert_ok(exrio_write(in_scratch("plain.exr"), &im.part, 1, 1, &e), e);
+    assert_int_equal(run_command("oiiotool '%s' --compression dwaa -o '%s'", in_scratch("plain.exr"), in_scratch("dwaa.exr")), 0);
+    check_without_tables(in_scratch("dwaa.exr"), (HEIGHT + 31) / 32, 4);
     free_image(&im);
 }
 
@@ -242,9 +257,11 @@ static void test_levels(void **state)
 
 int main(void)
 {
+    use_built_modules();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_scanlines, make_scratch, remove_scratch),
         cmocka_unit_test_setup_teardown(test_tiles, make_scratch, remove_scratch),
+        cmocka_unit_test_setup_teardown(test_dwa, make_scratch, remove_scratch),
         cmocka_unit_test_setup_teardown(test_deep, make_scratch, remove_scratch),
         cmocka_unit_test_setup_teardown(test_levels, make_scratch, remove_scratch),
     };
