@@ -166,8 +166,8 @@ bool choose_camera(build *b);
 // orthographic.c: the direction that an orthographic fit leaves open.
 bool orthographic_settle(build *b);
 
-// depth_hypotheses.c. First the depth's sign, and its kind if an option gives it. Then, with the camera known, the kind of a
-// depth without positions; this may classify the surfaces again. An error where depth cannot be read without a range.
+// depth_open.c, depth_hypotheses.c. First the depth's sign, and its kind if an option gives it. Then, with the camera known, the
+// kind of a depth without positions; this may classify the surfaces again. An error where depth cannot be read without a range.
 bool depth_open(build *b);
 bool depth_settle(build *b);
 

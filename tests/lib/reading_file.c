@@ -140,7 +140,8 @@ static double stored_depth(const master *m, const reading_case *c, vec3 p)
     double linear = (z - n) / (f - n), hyperbolic = f * (z - n) / (z * (f - n));
     const double by_kind[DEPTH_KINDS] = {
         0, z, v3_length(p), 1.0 / z, linear, 1.0 - linear, hyperbolic, 1.0 - hyperbolic, 2.0 * hyperbolic - 1.0};
-    return sign * by_kind[c->depth];
+    const double v = sign * by_kind[c->depth], changed[READING_CHANGES] = {v, sqrt(v), log(v), v - n};
+    return changed[c->change];
 }
 
 static double background_depth(const reading_case *c)
@@ -300,9 +301,10 @@ void reading_name(const reading_case *c, char *buf, size_t size)
     static const char *const encodings[] = {"signed", "unorm", "gamma", "srgb", "degamma", "desrgb"};
     static const char *const filters[] = {"closest", "box", "gauss", "lobes"};
     static const char *const layouts[] = {"XYZ", "RGB", "parts"};
+    static const char *const changes[] = {"", "square root of ", "logarithm of ", "less near, "};
     const char *depth_name = c->depth == DEPTH_AUTO ? "auto" : word_of(depth_kind_words, c->depth);
-    snprintf(buf, size, "%s, turned %g about %c%s, P %s, N %s %s%s flips %d, Z %s%s, %s, %s", scenes[c->scene], c->turn,
+    snprintf(buf, size, "%s, turned %g about %c%s, P %s, N %s %s%s flips %d, Z %s%s%s, %s, %s", scenes[c->scene], c->turn,
              "xyz"[c->axis], c -> mirrored ? " mirrored" : "", spaces[c->position], spaces[c->normal], encodings[c->encoding],
-             c->half_normals ? " half" : "", c->flips, c->negative_depth ? "-" : "", depth_name, filters[c->filter],
-             layouts[c->layout]);
+             c->half_normals ? " half" : "", c->flips, changes[c->change], c->negative_depth ? "-" : "", depth_name,
+             filters[c->filter], layouts[c->layout]);
 }

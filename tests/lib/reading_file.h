@@ -18,6 +18,9 @@ typedef enum reading_filter { FILTER_CLOSEST, FILTER_BOX, FILTER_GAUSS, FILTER_L
 typedef enum reading_space { ABSENT, WORLD, EYE_BACK, EYE_FORWARD, EYE_DOWN, OBJECT, READING_SPACES } reading_space;
 typedef enum reading_layout { LAYOUT_XYZ, LAYOUT_RGB, LAYOUT_PARTS, READING_LAYOUTS } reading_layout;
 
+// What a compositor may have done to a depth to look at it.
+typedef enum reading_change { UNCHANGED, SQUARE_ROOT, LOGARITHM, LESS_NEAR, READING_CHANGES } reading_change;
+
 typedef struct reading_case {
     reading_scene scene;
     int axis;      // 0 1 2: the camera is turned about this axis of the world
@@ -28,6 +31,7 @@ typedef struct reading_case {
     int flips;        // bits: components of the normal stored with the other sign
     depth_kind depth; // DEPTH_AUTO: none
     bool negative_depth;
+    reading_change change; // of the depth
     reading_filter filter;
     int aside; // closest: sampled so many fifths of a pixel to the right of its centre
     reading_layout layout;
