@@ -5,7 +5,7 @@
 
 PICTURE(rgba32f, planes_image);
 
-const int CHORDS = 6; // directions tested of the arc that a plane could block
+const int CHORDS = 5; // directions tested of the arc in which a plane's support lies
 const float BELIEVED_PLANE = 1.5; // beyond the frame a plane is believed up to here, in half widths of its support
 const float UNEVEN_LEAST = 0.04; // uneven ground nearer than this share of its margin is the receiver's own surface
 
@@ -43,9 +43,10 @@ bool stands(int plane, vec3 X, vec2 here, bool beyond_frame, float margin) {
     return inside ? supported && behind : beyond_frame && max(abs(here.x), abs(here.y)) <= BELIEVED_PLANE;
 }
 
-// The planes, as bits, that can block directions of a point: not those that it lies on, nor those out of reach. Found once for all its
-// slices, because a rasteriser on the CPU saves turns of a loop, not branches.
-uint planes_around(vec3 P) {
+// The planes, as bits, that can block directions of a point with normal N: not those that it lies on, whose support lies under its
+// tangent plane, or that are out of reach. Found once for all its slices, because a rasteriser on the CPU saves turns of a loop, not
+// branches.
+uint planes_around(vec3 P, vec3 N) {
     uint set = 0u;
     for (int i = 0; i < params.planes; i++) {
         vec4 equation = FETCH(planes_image, ivec2(PLANE_EQUATION, i));
@@ -53,13 +54,28 @@ uint planes_around(vec3 P) {
         bool uneven = off < 0.0;
         float least = 2.0 * abs(off) * (uneven ? UNEVEN_LEAST : 1.0) * (is_orthographic() ? 1.0 : P.z);
         bool blocks = height > least && !(uneven && h > 0.0);
+        // The support, with what is believed beyond the frame: its middle and its sides.
+        vec4 u = FETCH(planes_image, ivec2(PLANE_U, i)), v = FETCH(planes_image, ivec2(PLANE_V, i));
+        vec2 squares = vec2(dot(u.xyz, u.xyz), dot(v.xyz, v.xyz)), sides = (1.001 * BELIEVED_PLANE) / squares;
+        vec3 middle = equation.w * equation.xyz + u.w / squares.x * u.xyz + v.w / squares.y * v.xyz;
+        blocks = blocks && dot(N, middle - P) + sides.x * abs(dot(N, u.xyz)) + sides.y * abs(dot(N, v.xyz)) > 0.0;
 #ifdef LIMITED
-        blocks = blocks && height < params.radius;
+        vec2 aside = max(abs(vec2(dot(u.xyz, P) - u.w, dot(v.xyz, P) - v.w)) - 1.001 * BELIEVED_PLANE, vec2(0.0));
+        blocks = blocks && h * h + dot(aside * aside, 1.0 / squares) < params.radius * params.radius;
 #endif
         set |= blocks ? 1u << uint(i) : 0u;
     }
     return set;
 }
+
+// The part of a line A + x B that lies in the square -size .. size: from x.x to x.y, none if x.y is less.
+vec2 part_inside(vec2 A, vec2 B, float size) {
+    vec2 inverse = 1.0 / mix(B, vec2(1e-20), lessThan(abs(B), vec2(1e-20)));
+    vec2 a = (-size - A) * inverse, b = (size - A) * inverse, low = min(a, b), high = max(a, b);
+    return vec2(max(low.x, low.y), min(high.x, high.y));
+}
+
+float angle_of(float tangent) { return fast_atan(abs(tangent), 1.0) * (tangent < 0.0 ? -1.0 : 1.0); }
 
 void block_by_planes(inout Sectors sectors, Side s, vec3 V, vec3 across, float n, Lines lines, vec3 P, uint planes, float place, float jitter) {
     Border right = border_of(lines.right), left = border_of(lines.left);
@@ -68,21 +84,26 @@ void block_by_planes(inout Sectors sectors, Side s, vec3 V, vec3 across, float n
         vec4 equation = FETCH(planes_image, ivec2(PLANE_EQUATION, i));
         vec4 u = FETCH(planes_image, ivec2(PLANE_U, i)), v = FETCH(planes_image, ivec2(PLANE_V, i));
         float margin = 2.0 * abs(FETCH(planes_image, ivec2(PLANE_LIGHT, i)).w);
-        // Distance to the plane along direction t: height / (normal . (cos t, sin t)), least at t0.
+        bool goes_right = allows(right, equation, margin), goes_left = allows(left, equation, margin);
+        // The slice meets the plane in a line. Its points are nearest + x along; x is the tangent of the angle from t0, where the line
+        // is nearest. Distance to the plane along direction t: height / (normal . (cos t, sin t)).
         float h = equation.w - dot(equation.xyz, P), height = abs(h);
         vec2 normal = vec2(dot(equation.xyz, V), dot(equation.xyz, across)) * (h < 0.0 ? -1.0 : 1.0);
+        float inverse = inversesqrt(max(dot(normal, normal), 1e-30)), distance = height * inverse;
+        vec2 d0 = normal * inverse;
+        vec3 nearest = P + distance * (d0.x * V + d0.y * across), along = distance * (d0.x * across - d0.y * V);
+        vec2 line = part_inside(vec2(dot(u.xyz, nearest) - u.w, dot(v.xyz, nearest) - v.w), vec2(dot(u.xyz, along), dot(v.xyz, along)),
+                                goes_right || goes_left ? BELIEVED_PLANE : 1.0);
 #ifdef LIMITED
-        float reach = min(height * inversesqrt(max(dot(normal, normal), 1e-30)) / params.radius, 1.0);
-        float half_angle = fast_atan(sqrt(1.0 - reach * reach), reach);
-#else
-        float half_angle = 0.5 * PI - 1e-4;
+        float reach = min(distance / params.radius, 1.0), most = sqrt(1.0 - reach * reach) / reach;
+        line = vec2(max(line.x, -most), min(line.y, most));
 #endif
         float t0 = fast_atan(abs(normal.y), normal.x) * (normal.y < 0.0 ? -1.0 : 1.0);
         t0 -= t0 - n > PI ? 2.0 * PI : t0 - n < -PI ? -2.0 * PI : 0.0;
-        float from = max(t0 - half_angle, n - 0.5 * PI), to = min(t0 + half_angle, n + 0.5 * PI);
+        const float WIDEST = 0.5 * PI - 1e-4;
+        float from = max(t0 + max(angle_of(line.x), -WIDEST), n - 0.5 * PI), to = min(t0 + min(angle_of(line.y), WIDEST), n + 0.5 * PI);
         float width = (to - from) / float(CHORDS);
-        int chords = width > 0.0 ? CHORDS : 0;
-        bool goes_right = allows(right, equation, margin), goes_left = allows(left, equation, margin);
+        int chords = line.x < line.y && width > 0.0 ? CHORDS : 0;
 #ifdef BOUNCE
         vec3 sent = h < 0.0 ? FETCH(planes_image, ivec2(PLANE_LIGHT, i)).rgb : vec3(0.0); // from the side that the camera sees
 #else

@@ -44,7 +44,7 @@ Centre centre_of(Receiver here, ivec2 p) {
     c.eye_distance = length(c.P);
     c.tangent = ball_tangent(c.P);
 #ifdef PLANES
-    c.planes = planes_around(c.P);
+    c.planes = planes_around(c.P, c.N);
 #endif
     c.turn = pixel_noise(p, params.seed);
     return c;

@@ -21,8 +21,8 @@ typedef struct range {
 
 static const double THINNEST = 1e-3; // width over length of the support
 
-static const range HELD = {0.01, 0.03}, UNEVEN_HELD = {0.2, 0.3}; // share of all surfaces that the plane holds: more is better
-static const range THROUGH = {2.0, 4.0};                          // samples seen through it over samples on it: less is better
+static const range HELD = {0.0125, 0.03}, UNEVEN_HELD = {0.2, 0.3}; // share of all surfaces that the plane holds: more is better
+static const range THROUGH = {2.0, 4.0};                            // samples seen through it over samples on it: less is better
 
 static double along(range r, double x) { return fmin(fmax((x - r.from) / (r.to - r.from), 0.0), 1.0); }
 

@@ -31,8 +31,8 @@ typedef struct plane_set {
 } plane_set;
 
 // Finds the planes, largest first. Then looks for uneven ground among the other surfaces: those within 5 % of their depth of one
-// plane and within 37 degrees of its normal. Belief in a plane is none at 1 % of the surfaces and full at 3 % (uneven ground: 20
-// and 30 %), and less where the picture shows other surfaces through it. Planes without belief are left out.
+// plane and within 37 degrees of its normal. Belief in a plane is none at 1.25 % of the surfaces and full at 3 % (uneven ground:
+// 20 and 30 %), and less where the picture shows other surfaces through it. Planes without belief are left out.
 bool planes_find(const gbuffer *gb, plane_set *out, error *e);
 
 #endif
