@@ -26,7 +26,7 @@ float closed_share(Centre o, Slice s) {
 
 // Before a receiver's slices: what is guessed of surfaces that the picture does not show.
 void guess_light(Receiver here) {
-    unseen = UNSEEN * FETCH(sender_image, here.pixel).rgb;
+    guess_of_receiver(FETCH(sender_image, here.pixel).rgb, here.N);
 #ifdef OUTSIDE
     outside_light = FETCH(outside_image, ivec2(0)).rgb;
 #endif

@@ -5,22 +5,8 @@
 // the receiver blocks everything between its highest point and the tangent, so its highest share is 1 from the start.
 
 #ifdef BOUNCE
-#include "include/senders.glsl"
+#include "include/arc_unseen.glsl"
 UPICTURE(rgba32ui, surface_image); // senders.comp
-
-// The camera does not see the back of a surface, so the light of a back is a guess: it faces the receiver and sees much the same
-// surroundings, so it gets this share of the receiver's own light.
-const float UNSEEN = 0.4;
-vec3 unseen = vec3(0.0); // that light; before albedo if not EXITANT
-
-// Light that a surface sends to the receiver; `seen`: the receiver sees the side that the camera sees.
-vec3 sent_by(uvec2 sender, bool seen) {
-#ifdef EXITANT
-    return seen ? sender_light(sender) : unseen;
-#else
-    return seen ? sender_light(sender) : unseen * sender_albedo(sender);
-#endif
-}
 #else
 UPICTURE(rg32ui, surface_image); // surface.comp
 #endif
@@ -45,7 +31,7 @@ struct Run {
     vec2 first, last;   // ends, in the slice
     vec2 rim;           // the point of the highest share
     float rim_inverse;  // 1 / its distance from the eye
-    float last_share, last_squared; // of the last sample: share, squared distance
+    float last_share, last_squared, facing; // of the last sample: share, squared distance, cosine towards the receiver
     vec3 point, normal, light; // of the last sample
 #ifdef OUTSIDE
     float rim_depth, rim_share, seen_depth; // of the opening that the last sample shows (depth 0: none), and of what is seen through it
@@ -111,10 +97,18 @@ void visit(inout Sectors sectors, inout Run run, Side s, Walk k, vec3 P, float a
     bool surface = depth != 0.0;
     vec3 Q = position_of(q, depth), n = unpack_normal(stored_texel.y), gap = Q - run.point, to = Q - P;
     float step_size = scale * k.pixel * (at - before);
-    bool joined = run.alive && surface && min(abs(dot(run.normal, gap)), abs(dot(n, gap))) <= params.tolerance * step_size;
+    vec2 before_plane = vec2(dot(run.normal, gap), -dot(n, gap)), off = abs(before_plane); // the one point before the other's plane
+    float most_off = params.tolerance * step_size;
+    bool joined = run.alive && surface && min(off.x, off.y) <= most_off;
     bool nearer = gap.z < 0.0;
 #ifdef BOUNCE
-    vec3 light = sent_by(stored_texel.zw, dot(n, to) < 0.0);
+    float facing = dot(n, to) * inversesqrt(max(dot(to, to), 1e-30));
+    vec3 light = sent_by(stored_texel.zw, facing < 0.0);
+    // What joins two samples is seen on the one that faces the receiver more: the other may be its own ground, edge-on, far behind. But
+    // where the planes of the two do not cross between them (each sample before the other's plane, or each behind), the nearer surface
+    // stands free before the farther one, and a march that steps onto it meets its hidden side.
+    bool stands_free = before_plane.x * before_plane.y < 0.0 && max(off.x, off.y) > most_off;
+    vec3 between = stands_free && nearer ? sent_by(stored_texel.zw, false) : abs(facing) >= run.facing ? light : run.light;
 #endif
     finish(sectors, s, k, run, !surface || !nearer, !joined);
     vec2 w = in_slice(s, to), w_in = w;
@@ -137,9 +131,10 @@ void visit(inout Sectors sectors, inout Run run, Side s, Walk k, vec3 P, float a
     run.last_share = c;
 #endif
 #ifdef BOUNCE
-    block(sectors, joined ? sectors_between(min(run.last_share, c), max(run.last_share, c), k.jitter) : uvec2(0u), light);
+    block(sectors, joined ? sectors_between(min(run.last_share, c), max(run.last_share, c), k.jitter) : uvec2(0u), between);
     run.last_share = c;
     run.light = light;
+    run.facing = abs(facing);
 #endif
     float low = joined ? run.low : 2.0, high = joined ? run.high : -1.0;
     bool rises = counts && c >= high;
@@ -189,7 +184,7 @@ void go_on(inout Sectors sectors, inout Run run, Side s, Walk k, float at) {
 }
 
 void march(inout Sectors sectors, Side s, Line line, vec3 P, vec3 N, float step_jitter, float jitter) {
-    Run run = Run(true, false, 2.0, 1.0, 0.0, vec2(0.0), vec2(0.0), vec2(0.0), 0.0, 1.0, 0.0, P, N, vec3(0.0)
+    Run run = Run(true, false, 2.0, 1.0, 0.0, vec2(0.0), vec2(0.0), vec2(0.0), 0.0, 1.0, 0.0, 0.0, P, N, vec3(0.0)
 #ifdef OUTSIDE
                   , 0.0, 0.0, 0.0
 #endif

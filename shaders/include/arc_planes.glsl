@@ -6,7 +6,6 @@
 PICTURE(rgba32f, planes_image);
 
 const int CHORDS = 5; // directions tested of the arc in which a plane's support lies
-const float BELIEVED_PLANE = 1.5; // beyond the frame a plane is believed up to here, in half widths of its support
 const float UNEVEN_LEAST = 0.04; // uneven ground nearer than this share of its margin is the receiver's own surface
 
 // True if the recorded surface at a pixel lies in front of depth z, or (with a negative margin) at it. A margin is a share of the depth,

@@ -74,6 +74,9 @@ Slice march_slice(Centre c, int i) {
     Line line = s.lines.left;
     // The far side first. There sectors are counted from the other end. One loop, so that the march is compiled once.
     for (int k = 0; k < 2; k++) {
+#ifdef BOUNCE
+        guess_of_side(s.side.tangent);
+#endif
         march(s.sectors, s.side, line, c.P, c.N, k == 0 ? 1.0 - s.noise.x : s.noise.x, k == 0 ? 1.0 - s.noise.y : s.noise.y);
         if (k == 0) {
             s.sectors = counted_from_the_other_end(s.sectors);

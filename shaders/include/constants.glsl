@@ -22,6 +22,7 @@
 #define PLANE_BELIEF 4   // x: how far the plane is believed in, 0 .. 1; y, z: the sectors that it may block, 16 bits each
 #define PLANE_MASK 5     // 4 columns: 16 rows of 16 bits over the support: the picture does not show the plane to be absent there
 #define PLANE_COLUMNS 9
+#define BELIEVED_PLANE 1.5 // beyond the frame a plane is believed up to here, in half widths of its support
 
 // The lat-long grid of how open the outside is (src/passes/openness.h): columns, a power of 2; rows between the poles; numbers, in
 // vectors of four.

@@ -23,5 +23,6 @@ PARAMS(arc_params) {
     vec4 sun_direction[MAX_SUNS]; // camera space, unit; w half its width, radians
     vec4 sun_light[MAX_SUNS];     // rgb: irradiance over pi of a surface that faces the sun
     vec4 box_low, box_high; // of all surfaces, map axes, the eye at the origin
+    vec4 hidden[9];         // radiance coefficients of what lights hidden faces (src/passes/hidden.h)
     vec4 rest[9];           // radiance coefficients of the map without its suns
 } END_PARAMS(arc_params)

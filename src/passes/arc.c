@@ -82,6 +82,8 @@ arc_params arc_unlimited_params_of(const pass_context *c)
 {
     arc_params p = arc_params_of(c);
     p.radius = HUGE_LENGTH;
+    for (int i = 0; i < HIDDEN_SH; i++)
+        for (int k = 0; k < 3; k++) p.hidden[i][k] = (float)c->hidden[i][k];
     // Uneven ground stands in for light only. Within the radius runs find better what it hides.
     p.planes = c->planes.count + c->planes.uneven;
     p.tolerance = TOLERANCE;
@@ -277,6 +279,14 @@ static bool make_senders(pass_context *c, const gpu_image *sender, const gpu_ima
     return pass_make_image(c, IMAGE_SENDERS, e) && pass_run(c, &call, e);
 }
 
+static bool find_hidden_light(pass_context *c, error *e)
+{
+    mat3 map_from_camera = m3_mul(c->env->map_from_world, c->set.world_from_camera);
+    if (c->hidden_found) return true;
+    c->hidden_found = hidden_light(c->env, map_from_camera, c->gb, &c->planes, c->threads, c->hidden, e);
+    return c->hidden_found;
+}
+
 // Light comes from any distance, so this march has no radius. It makes the sky's light, through the open sectors, and the bounce,
 // from the blocked ones. One march makes both, unless the bounce gathers the filtered sky light itself.
 //
@@ -291,6 +301,7 @@ bool arc_run_light(pass_context *c, bool sky, bool bounce, error *e)
                                                    : IMAGE_RADIANCE],
                     *albedo = &seen->image[exitant ? IMAGE_BEAUTY : IMAGE_ALBEDO];
     if (!arc_make_inputs(seen, e) || (sky && bounce && !exitant && !arc_first_light(c, e))) return false;
+    if (bounce && !exitant && !find_hidden_light(seen, e)) return false;
     arc_params params = arc_unlimited_params_of(seen);
     int slices, steps;
     arc_grid(c->set.samples, &slices, &steps);

@@ -14,6 +14,7 @@
 #include "light/environment.h"
 #include "light/proxies.h"
 #include "light/sun.h"
+#include "passes/hidden.h"
 #include "passes/images.h"
 #include "passes/openness.h"
 #include "passes/planes.h"
@@ -128,8 +129,10 @@ typedef struct pass_context {
     int width, height;
     gpu_image image[IMAGE_COUNT]; // id 0: the frame has none, or its pass has not run
 
-    bool suns_pending; // radiance and visibility lack the suns of `sunless`: pass_suns adds them after the filter
-    plane_set planes;  // found by the pass that uses them
+    bool suns_pending;           // radiance and visibility lack the suns of `sunless`: pass_suns adds them after the filter
+    double hidden[HIDDEN_SH][3]; // of planes and environment, if hidden_found
+    bool hidden_found;
+    plane_set planes; // found by the pass that uses them
     adaptive_sampling adaptive;
 
     GLuint frame_uniforms, params_uniforms;
