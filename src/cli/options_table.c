@@ -135,7 +135,7 @@ const option_row option_rows[] = {
      .max = INFINITY, .pixels = true, .fallback = "1", .help = "As --env-scale, of --beauty-env."},
     {.group = GROUP_ENVIRONMENT, .name = "env-colorspace", .argument = "C", .kind = OPT_TEXT, .offset = FIELD(env_colorspace),
      .pixels = true, .fallback = "linear already",
-     .help = "Colour space of the environment map, converted to the scene_linear role of an OpenColorIO config."},
+     .help = "Colour space of the maps of --env and --beauty-env, converted to the scene_linear role of an OpenColorIO config."},
     {.group = GROUP_ENVIRONMENT, .name = "ocio", .argument = "FILE", .kind = OPT_PATH, .offset = FIELD(ocio), .pixels = true,
      .fallback = "the config that $OCIO names", .help = "OpenColorIO config for colour spaces named on the command line."},
     {.group = GROUP_ENVIRONMENT, .name = "env-frame", .kind = OPT_ENUM, .offset = FIELD(env_frame),
