@@ -14,13 +14,20 @@ typedef struct stored {
     vec3 code; // of the normal, as it is stored: what the filter took the mean of
     vec3 n;    // decoded, in camera space, of the length that this gives; 0 without
     double alpha;
-    bool clean;  // one surface
-    vec3 mended; // normal
 } stored;
 
+// What is known of a pixel before it is read whole: bits.
+enum { PIXEL_WHOLE = 1, PIXEL_NEARLY = 2, PIXEL_CLEAN = 4 };
+
+// Most pixels are read no further than it takes to see that they are clean. The others, and those around them, are kept once
+// read.
 typedef struct repair {
     build *b;
-    stored *pixels;
+    uint8_t *state;
+    int *place;     // of a pixel among those read, from 1; 0: not read yet
+    stored **read;  // in blocks
+    int count;      // of pixels read
+    bool failed;    // memory was short, the error is set
     stored nothing; // what the background stores
     bool inverse;   // depth alone whose values are linear in 1 / z
     bool radial;    // depth alone: distance from the eye
@@ -49,20 +56,29 @@ static inline bool filtered_inside(const build *b, int x, int y)
     return x >= 0 && y >= 0 && x < b->g->width && y < b->g->height;
 }
 
+// One surface.
 static inline bool filtered_clean(const repair *r, int x, int y)
 {
-    return filtered_inside(r->b, x, y) && r->pixels[build_index(r->b, x, y)].clean;
+    return filtered_inside(r->b, x, y) && r->state[build_index(r->b, x, y)] & PIXEL_CLEAN;
 }
 
-// Where a pixel's surface lies in camera space.
-vec3 filtered_place(const repair *r, int x, int y);
+// What a pixel holds. The pointer stays.
+const stored *filtered_at(repair *r, int x, int y);
+// The same, not kept: for many threads.
+stored filtered_read(const repair *r, int x, int y);
+
+// Where the surface that a pixel of these values shows lies in camera space.
+vec3 filtered_place(const repair *r, const stored *s, int x, int y);
+
+// filtered_clean.c. Finds the clean pixels.
+void filtered_find_clean(repair *r);
 
 // The planar depth that stored values mean, 0 where there is none; and the values of a surface at that depth.
 double filtered_depth(const repair *r, vec3 p, int x, int y);
 vec3 filtered_values(const repair *r, int x, int y, double z);
 
 // filtered_mix.c. The nearest clean pixel in each direction, and the background if it is near; how many.
-int filtered_sides(const repair *r, int x, int y, side list[SIDES]);
+int filtered_sides(repair *r, int x, int y, side list[SIDES]);
 // The two of them that explain the pixel best; rest INFINITY if none do.
 mixture filtered_mixture(const repair *r, const stored *s, const side *list, int count);
 // The near side's normal if the far one's share is taken out, not normalised.
@@ -77,9 +93,9 @@ double filtered_carried(const build *b, int u, int v, vec3 n, int x, int y);
 void filtered_measure(repair *r);
 // The near side's depth and normal at the pixel's centre, where it is a round surface that bends away at its outline. False where
 // it is not, or the width is not known.
-bool filtered_outline(const repair *r, const stored *s, const mixture *m, int x, int y, double *z, vec3 *n);
+bool filtered_outline(repair *r, const stored *s, const mixture *m, int x, int y, double *z, vec3 *n);
 
 // filtered_surface.c. What the pixel's own side is at its centre.
-void filtered_settle(const repair *r, const stored *s, const mixture *m, int x, int y, double *z, vec3 *n);
+void filtered_settle(repair *r, const stored *s, const mixture *m, int x, int y, double *z, vec3 *n);
 
 #endif

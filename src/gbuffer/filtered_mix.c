@@ -22,7 +22,7 @@ double filtered_carried(const build *b, int u, int v, vec3 n, int x, int y)
     return z > 0.5 * at.z && z < 2.0 * at.z ? z : at.z;
 }
 
-int filtered_sides(const repair *r, int x, int y, side list[SIDES])
+int filtered_sides(repair *r, int x, int y, side list[SIDES])
 {
     const int(*step)[2] = filtered_step;
     const build *b = r->b;
@@ -33,9 +33,10 @@ int filtered_sides(const repair *r, int x, int y, side list[SIDES])
             int u = x + d * step[k][0], v = y + d * step[k][1];
             if (!filtered_inside(b, u, v)) break;
             size_t i = build_index(b, u, v);
-            open = open || !(b->g->depth[i] > 0.0f) || (b->alpha.data && r->pixels[i].alpha < 0.5);
-            if (!r->pixels[i].clean) continue;
-            side s = {.code = r->pixels[i].code, .n = r->pixels[i].n, .alpha = 1.0, .u = u, .v = v};
+            open = open || !(b->g->depth[i] > 0.0f) || (b->alpha.data && !(plane_get(&b->alpha, u, v) >= 0.5));
+            if (!(r->state[i] & PIXEL_CLEAN)) continue;
+            const stored *at = filtered_at(r, u, v);
+            side s = {.code = at->code, .n = at->n, .alpha = 1.0, .u = u, .v = v};
             s.z = filtered_carried(b, u, v, made_normal(b, u, v), x, y);
             s.p = filtered_values(r, x, y, s.z);
             list[count++] = s;

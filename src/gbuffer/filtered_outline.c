@@ -28,16 +28,17 @@ typedef struct way {
     double q[2];  // squared cosine between normal and ray at the first two
 } way;
 
-static const stored *clean_pixel(const repair *r, const way *w, int k, int x, int y)
+static const stored *clean_pixel(repair *r, const way *w, int k, int x, int y)
 {
     int steps = w->first + k;
-    return &r->pixels[build_index(r->b, x + steps * w->dx, y + steps * w->dy)];
+    return filtered_at(r, x + steps * w->dx, y + steps * w->dy);
 }
 
-static double clean_depth(const repair *r, const way *w, int k, int x, int y)
+static double clean_depth(repair *r, const way *w, int k, int x, int y)
 {
     int steps = w->first + k;
-    return filtered_place(r, x + steps * w->dx, y + steps * w->dy).z;
+    int u = x + steps * w->dx, v = y + steps * w->dy;
+    return filtered_place(r, filtered_at(r, u, v), u, v).z;
 }
 
 static double squared_cosine(const repair *r, vec3 n, int x, int y)
@@ -46,7 +47,7 @@ static double squared_cosine(const repair *r, vec3 n, int x, int y)
     return c * c;
 }
 
-static bool leads_to_clean(const repair *r, const side *own, way *w, int x, int y)
+static bool leads_to_clean(repair *r, const side *own, way *w, int x, int y)
 {
     w->first = 1;
     while (w->first <= FILTER_REACH && !filtered_clean(r, x + w->first * w->dx, y + w->first * w->dy)) w->first++;
@@ -56,7 +57,7 @@ static bool leads_to_clean(const repair *r, const side *own, way *w, int x, int 
 }
 
 // Of the steps that lead to clean pixels of the near surface the one that goes inwards most directly.
-static bool find_way(const repair *r, const mixture *m, int x, int y, way *out)
+static bool find_way(repair *r, const mixture *m, int x, int y, way *out)
 {
     vec3 ray = v3_normalize(build_ray(&r->b->g->camera, x, y)), across = v3_sub(m->n, v3_scale(ray, v3_dot(m->n, ray)));
     double flat = hypot(across.x, across.y), best = aligned;
@@ -75,7 +76,7 @@ static bool find_way(const repair *r, const mixture *m, int x, int y, way *out)
 }
 
 // Whether the surface is round along the way: it faces the eye less towards the outline, and its normals turn evenly.
-static bool is_round(const repair *r, const mixture *m, const way *w, int x, int y)
+static bool is_round(repair *r, const mixture *m, const way *w, int x, int y)
 {
     double d = 0.5 - m->share, s = d + w->first * w->along, q = squared_cosine(r, m->n, x, y), t[CLEAN];
     if (q > steepest || w->q[0] < q || !(s > 0.0)) return false;
@@ -142,7 +143,7 @@ static bool interpolate(double means_of[TERMS][TERMS], double root, double out[T
     return true;
 }
 
-bool filtered_outline(const repair *r, const stored *s, const mixture *mixed, int x, int y, double *z, vec3 *n)
+bool filtered_outline(repair *r, const stored *s, const mixture *mixed, int x, int y, double *z, vec3 *n)
 {
     mixture m = *mixed;
     way w;
@@ -160,12 +161,12 @@ bool filtered_outline(const repair *r, const stored *s, const mixture *mixed, in
 }
 
 // The near side's share of a pixel beside the mixed one, of whose two sides it is a mean too; NaN if it is not.
-static double share_beside(const repair *r, const mixture *m, int x, int y)
+static double share_beside(repair *r, const mixture *m, int x, int y)
 {
     side list[SIDES];
     if (!filtered_inside(r->b, x, y)) return (double)NAN;
-    const stored *s = &r->pixels[build_index(r->b, x, y)];
-    if (s->clean) return v3_dot(s->n, m->near->n) > v3_dot(s->n, m->far->n) ? 1.0 : 0.0;
+    const stored *s = filtered_at(r, x, y);
+    if (filtered_clean(r, x, y)) return v3_dot(s->n, m->near->n) > v3_dot(s->n, m->far->n) ? 1.0 : 0.0;
     mixture beside = filtered_mixture(r, s, list, filtered_sides(r, x, y, list));
     if (!isfinite(beside.rest)) return (double)NAN;
     bool same = (beside.far->z == 0.0) == (m->far->z == 0.0) && v3_dot(beside.near->n, m->near->n) > like;
@@ -179,11 +180,11 @@ typedef struct crossing {
 } crossing;
 
 // Along a line over the outline all shares of the near side add up to where the outline is, whatever the filter.
-static bool cross(const repair *r, int x, int y, crossing *out)
+static bool cross(repair *r, int x, int y, crossing *out)
 {
     side list[SIDES];
     way w;
-    const stored *s = &r->pixels[build_index(r->b, x, y)];
+    const stored *s = filtered_at(r, x, y);
     mixture m = filtered_mixture(r, s, list, filtered_sides(r, x, y, list));
     if (!isfinite(m.rest) || !refine(r, s, &m) || m.share < 0.1 || m.share > 0.4) return false;
     if (!find_way(r, &m, x, y, &w) || !is_round(r, &m, &w, x, y) || (w.dx != 0 && w.dy != 0)) return false;
@@ -215,10 +216,10 @@ void filtered_measure(repair *r)
     const double box = BOX;
     crossing found[MOST_MEASURED];
     size_t total = (size_t)b->g->width * (size_t)b->g->height, mixed = 0, count = 0;
-    for (size_t i = 0; i < total; i++) mixed += !r->pixels[i].clean && b->g->depth[i] > 0.0f;
+    for (size_t i = 0; i < total; i++) mixed += !(r->state[i] & PIXEL_CLEAN) && b->g->depth[i] > 0.0f;
     size_t stride = mixed / MOST_TRIED + 1, at = 0;
     for (size_t i = 0; r->lengths && i < total && count < MOST_MEASURED; i++) {
-        if (r->pixels[i].clean || !(b->g->depth[i] > 0.0f) || at++ % stride != 0) continue;
+        if (r->state[i] & PIXEL_CLEAN || !(b->g->depth[i] > 0.0f) || at++ % stride != 0) continue;
         count += cross(r, (int)(i % (size_t)b->g->width), (int)(i / (size_t)b->g->width), &found[count]);
     }
     if (count < LEAST_MEASURED) return;

@@ -13,7 +13,7 @@ static double pixel_size(const build *b, double z)
 
 // How far a bump map turns the normal of a clean pixel away from the surface that the positions around it form. 0 and false where
 // there are too few clean pixels to tell.
-static bool bump_at(const repair *r, int x, int y, vec3 *bump)
+static bool bump_at(repair *r, int x, int y, vec3 *bump)
 {
     static const int step[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     vec3 at[4];
@@ -22,9 +22,9 @@ static bool bump_at(const repair *r, int x, int y, vec3 *bump)
     for (int k = 0; k < 4; k++) {
         int u = x + step[k][0], v = y + step[k][1];
         if (!filtered_clean(r, u, v)) return false;
-        at[k] = filtered_place(r, u, v);
+        at[k] = filtered_place(r, filtered_at(r, u, v), u, v);
     }
-    vec3 as_stored = r->pixels[build_index(r->b, x, y)].n, n = v3_normalize(v3_cross(v3_sub(at[0], at[1]), v3_sub(at[2], at[3])));
+    vec3 as_stored = filtered_at(r, x, y)->n, n = v3_normalize(v3_cross(v3_sub(at[0], at[1]), v3_sub(at[2], at[3])));
     double cosine = v3_dot(n, as_stored);
     if (!(fabs(cosine) > 0.7)) return false;
     *bump = v3_sub(as_stored, v3_scale(n, cosine < 0.0 ? -1.0 : 1.0));
@@ -77,7 +77,7 @@ typedef struct inward {
     double q[3];    // squared cosine of the normals with their rays
 } inward;
 
-static bool look_inward(const repair *r, const side *own, int x, int y, inward *in)
+static bool look_inward(repair *r, const side *own, int x, int y, inward *in)
 {
     const build *b = r->b;
     in->dx = (own->u > x) - (own->u < x), in->dy = (own->v > y) - (own->v < y);
@@ -85,7 +85,7 @@ static bool look_inward(const repair *r, const side *own, int x, int y, inward *
     for (int k = 0; k < 3; k++) {
         int u = own->u + k * in->dx, v = own->v + k * in->dy;
         if (!filtered_clean(r, u, v)) return false;
-        vec3 ray = v3_normalize(build_ray(&b->g->camera, u, v)), n = v3_normalize(r->pixels[build_index(b, u, v)].n);
+        vec3 ray = v3_normalize(build_ray(&b->g->camera, u, v)), n = v3_normalize(filtered_at(r, u, v)->n);
         double cosine = v3_dot(n, ray);
         if (k < 2) in->across[k] = v3_normalize(v3_sub(n, v3_scale(ray, cosine)));
         in->q[k] = cosine * cosine, normals[k] = n;
@@ -98,7 +98,7 @@ static bool look_inward(const repair *r, const side *own, int x, int y, inward *
 // with the distance in the picture, down to 0 at the outline. The far side's share tells where that is, too. A circle's chord is
 // at right angles to the mean of the normals at its ends, which gives the depth. False where the surface is not round, or has
 // bumps.
-static bool follow_round(const repair *r, const mixture *m, int x, int y, double *z, vec3 *n)
+static bool follow_round(repair *r, const mixture *m, int x, int y, double *z, vec3 *n)
 {
     const build *b = r->b;
     const side *own = m->share > 0.5 ? m->far : m->near;
@@ -126,7 +126,7 @@ static bool follow_round(const repair *r, const mixture *m, int x, int y, double
     return true;
 }
 
-void filtered_settle(const repair *r, const stored *s, const mixture *m, int x, int y, double *z, vec3 *n)
+void filtered_settle(repair *r, const stored *s, const mixture *m, int x, int y, double *z, vec3 *n)
 {
     const side *own = m->share > 0.5 ? m->far : m->near;
     if (filtered_outline(r, s, m, x, y, z, n) || follow_round(r, m, x, y, z, n)) return;
