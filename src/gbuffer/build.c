@@ -116,7 +116,7 @@ bool gbuffer_build(const exrio_file *file, const resolution *r, const gbuffer_op
     *out = (gbuffer){0};
     build b = {.file = file, .r = r, .options = options, .g = out, .log = log, .e = e, .row = convention_named(r->convention)};
     bool done = open_frame(&b) && depth_open(&b) && validity_find(&b) && choose_camera(&b) && orthographic_settle(&b) &&
-                depth_settle(&b) && positions_raw(&b) && measure_normals(&b) && damage_warn(&b);
+                depth_settle(&b) && positions_raw(&b) && measure_normals(&b) && damage_warn(&b) && filtered_prepare(&b);
     if (done) {
         positions_final(&b);
         normals_make(&b);
@@ -124,6 +124,7 @@ bool gbuffer_build(const exrio_file *file, const resolution *r, const gbuffer_op
     }
     free(b.surface);
     free(b.position.raw);
+    free(b.normal.lengths);
     free(b.sample.points);
     free(b.sample.depth);
     if (!done) gbuffer_free(out);

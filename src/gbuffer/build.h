@@ -75,13 +75,17 @@ typedef struct camera_evidence {
     vec3 eye;
 } camera_evidence;
 
+// Bits: a stored normal is 1 long within a fiftieth, and within a hundredth.
+enum { LENGTH_NEARLY = 1, LENGTH_WHOLE = 2 };
+
 // N and how it is read.
 typedef struct normal_evidence {
     plane n[3];
     bool there;     // present and believed
     mat3 to_camera; // takes the file's normals to camera space
     normal_encoding encoding;
-    double longest; // as stored; longer ones are damaged
+    double longest;   // as stored; longer ones are damaged
+    uint8_t *lengths; // of every surface's, in bits; NULL: not asked for
 } normal_evidence;
 
 // A sample of the surfaces, spread over the frame, with their Z (NaN without).
@@ -197,7 +201,9 @@ double normals_length(const build *b, int x, int y);
 vec3 normals_from_depth(const build *b, const float *depth, int x, int y);
 void normals_make(build *b);
 
-// filtered.c: gives the pixels that a filter mixed one surface, after depth and normals are made.
+// filtered.c: asks for what filtered_mend needs of normals_make, and gives the pixels that a filter mixed one surface, after
+// depth and normals are made.
+bool filtered_prepare(build *b);
 bool filtered_mend(build *b);
 
 // defects.c: one warning for each kind of sample that could not be used, if it touches more than a thousandth of the pixels.

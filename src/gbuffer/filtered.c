@@ -142,19 +142,15 @@ static bool mend_all(repair *r)
 {
     build *b = r->b;
     mended_list list = {0};
-    bool ok = true;
-    filtered_find_clean(r);
-    filtered_measure(r);
-    for (int y = 0; ok && y < b->g->height; y++)
-        for (int x = 0; ok && x < b->g->width; x++) {
-            size_t i = build_index(b, x, y);
-            if (r->state[i] & PIXEL_CLEAN) continue;
-            if (!(b->g->depth[i] > 0.0f) && !(plane_get(&b->alpha, x, y) > 0.5)) continue; // empty
-            ok = mend(r, &list, x, y) && !r->failed;
-        }
+    bool ok = filtered_find_clean(r);
+    if (ok) filtered_measure(r);
+    for (size_t k = 0; ok && k < r->mixed_count; k++) {
+        const size_t i = r->mixed[k], width = (size_t)b->g->width;
+        ok = mend(r, &list, (int)(i % width), (int)(i / width)) && !r->failed;
+    }
     if (ok) {
         put(b, &list);
-        if (!b->normal.there) normals_make(b);  // of the mended depths
+        if (!b->normal.there) normals_make(b);  // of the mended depths; the lengths are no longer needed
         atomic_store(&b->defects.positions, 0); // they are among the mended
         build_note(b, "%zu pixels of filtered passes lie between surfaces and were given to the nearest one", list.count);
     }
@@ -176,21 +172,33 @@ static void describe(repair *r)
     r->lengths = lengths_are_whole(b);
 }
 
-bool filtered_mend(build *b)
+static bool is_filtered(const build *b)
 {
     role depth = b->position.has_p && !b->position.z_wins ? ROLE_POSITION : ROLE_DEPTH;
-    if (!(b->filtered & 1u << depth)) return true;
+    return b->filtered & 1u << depth;
+}
+
+bool filtered_prepare(build *b)
+{
+    if (!is_filtered(b)) return true;
+    b->normal.lengths = mem_pixels((size_t)b->g->width * (size_t)b->g->height, 1, b->e);
+    return b->normal.lengths != NULL;
+}
+
+bool filtered_mend(build *b)
+{
+    if (!is_filtered(b)) return true;
     size_t total = (size_t)b->g->width * (size_t)b->g->height, blocks = total / BLOCK + 1;
     repair r = {.b = b,
-                .state = mem_pixels(total, 1, b->e),
+                .state = b->normal.lengths,
                 .place = mem_zero(total, sizeof *r.place, b->e),
                 .read = mem_zero(blocks, sizeof *r.read, b->e)};
-    bool ok = r.state && r.place && r.read;
+    bool ok = r.place && r.read;
     if (ok) describe(&r);
     ok = ok && mend_all(&r);
     for (size_t i = 0; r.read && i < blocks; i++) free(r.read[i]);
     free(r.read);
+    free(r.mixed);
     free(r.place);
-    free(r.state);
     return ok;
 }

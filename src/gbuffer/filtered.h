@@ -16,14 +16,16 @@ typedef struct stored {
     double alpha;
 } stored;
 
-// What is known of a pixel before it is read whole: bits.
-enum { PIXEL_WHOLE = 1, PIXEL_NEARLY = 2, PIXEL_CLEAN = 4 };
+// What is known of a pixel before it is read whole: bits beside those of the normal's length.
+enum { PIXEL_CLEAN = 4, PIXEL_EMPTY = 8, PIXEL_WHOLE = 16 };
 
 // Most pixels are read no further than it takes to see that they are clean. The others, and those around them, are kept once
 // read.
 typedef struct repair {
     build *b;
-    uint8_t *state;
+    uint8_t *state; // normal.lengths, and more
+    size_t *mixed;  // the pixels that are not clean, and hold something
+    size_t mixed_count;
     int *place;     // of a pixel among those read, from 1; 0: not read yet
     stored **read;  // in blocks
     int count;      // of pixels read
@@ -70,8 +72,9 @@ stored filtered_read(const repair *r, int x, int y);
 // Where the surface that a pixel of these values shows lies in camera space.
 vec3 filtered_place(const repair *r, const stored *s, int x, int y);
 
-// filtered_clean.c. Finds the clean pixels.
-void filtered_find_clean(repair *r);
+// filtered_clean.c. Finds the clean pixels, and lists those that are neither that nor empty. False, with the error set, where
+// memory is short.
+bool filtered_find_clean(repair *r);
 
 // The planar depth that stored values mean, 0 where there is none; and the values of a surface at that depth.
 double filtered_depth(const repair *r, vec3 p, int x, int y);

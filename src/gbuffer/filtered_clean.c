@@ -1,49 +1,32 @@
 // Which pixels of a filtered pass show one surface alone: the normal has its length, alpha is 1, and along each axis at least one
 // neighbour continues the surface. Depths and lengths tell it of nearly all pixels. Only where they do not, normals are asked.
+#include "base/mem.h"
 #include "base/threads.h"
 #include "gbuffer/filtered.h"
 
-static const float least[2] = {0.98f * 0.98f, 0.99f * 0.99f}; // squared lengths of a neighbour's normal, and of a pixel's own
-static const float most[2] = {1.02f * 1.02f, 1.01f * 1.01f};
 static const float odd_alpha = 0.01f;
 static const double off_tangent = 0.05; // of the step between neighbours
 static const float most_bend = 0.5f;    // second difference of depth over a pixel's size at that depth
 
-static void square_lengths(const build *b, int x, int y, int count, float *out)
-{
-    float v[3][PLANE_BLOCK] = {{0}};
-    const normal_encoding e = b->normal.encoding;
-    for (int c = 0; c < 3; c++) plane_fetch(&b->normal.n[c], x, y, count, v[c]);
-    const float scale = e == NORMAL_SIGNED ? 1.0f : 2.0f, offset = e == NORMAL_SIGNED ? 0.0f : 1.0f;
-    for (int k = 0; k < count && e <= NORMAL_UNORM; k++) {
-        float a = scale * v[0][k] - offset, c = scale * v[1][k] - offset, d = scale * v[2][k] - offset;
-        out[k] = a * a + c * c + d * d;
-    }
-    for (int k = 0; k < count && e > NORMAL_UNORM; k++) {
-        vec3 n = encoding_decode(e, v3((double)v[0][k], (double)v[1][k], (double)v[2][k]));
-        out[k] = (float)v3_dot(n, n);
-    }
-}
-
+// A pixel is whole if its normal and its alpha are.
 static bool look_at_row(void *context, size_t row, int worker)
 {
     (void)worker;
     const repair *r = context;
     const build *b = r->b;
-    const int y = (int)row, width = b->g->width;
+    const int y = (int)row, width = b->g->width, unasked = r->lengths ? 0 : LENGTH_NEARLY | LENGTH_WHOLE;
     for (int x = 0; x < width; x += PLANE_BLOCK) {
-        float length[PLANE_BLOCK], alpha[PLANE_BLOCK];
+        float alpha[PLANE_BLOCK];
         const int count = width - x < PLANE_BLOCK ? width - x : PLANE_BLOCK;
         const float *depth = b->g->depth + build_index(b, x, y);
         uint8_t *state = r->state + build_index(b, x, y);
-        for (int k = 0; k < count; k++) length[k] = alpha[k] = 1.0f;
-        if (r->lengths) square_lengths(b, x, y, count, length);
-        if (b->alpha.data) plane_fetch(&b->alpha, x, y, count, alpha);
+        const bool has_alpha = b->alpha.data;
+        if (has_alpha) plane_fetch(&b->alpha, x, y, count, alpha);
         for (int k = 0; k < count; k++) {
-            const int nearly = length[k] >= least[0] && length[k] <= most[0];
-            const int whole =
-                length[k] >= least[1] && length[k] <= most[1] && depth[k] > 0.0f && fabsf(alpha[k] - 1.0f) <= odd_alpha;
-            state[k] = (uint8_t)(nearly * PIXEL_NEARLY | whole * PIXEL_WHOLE);
+            const bool opaque = !has_alpha || fabsf(alpha[k] - 1.0f) <= odd_alpha, there = depth[k] > 0.0f;
+            const int known = state[k] | unasked;
+            const bool whole = opaque && there && known & LENGTH_WHOLE, empty = !there && !(has_alpha && alpha[k] > 0.5f);
+            state[k] = (uint8_t)(known | (whole ? PIXEL_WHOLE : 0) | (empty ? PIXEL_EMPTY : 0));
         }
     }
     return true;
@@ -53,29 +36,34 @@ static bool look_at_row(void *context, size_t row, int worker)
 static bool by_normals(const repair *r, const stored *here, int x, int y, int dx, int dy)
 {
     const build *b = r->b;
-    if (!filtered_inside(b, x + dx, y + dy) || !(r->state[build_index(b, x + dx, y + dy)] & PIXEL_NEARLY)) return false;
+    if (!filtered_inside(b, x + dx, y + dy) || !(r->state[build_index(b, x + dx, y + dy)] & LENGTH_NEARLY)) return false;
     stored beside = filtered_read(r, x + dx, y + dy);
     vec3 next = filtered_place(r, &beside, x + dx, y + dy), step = v3_sub(next, filtered_place(r, here, x, y));
     return next.z > 0.0 && fabs(v3_dot(v3_add(here->n, beside.n), step)) < 2.0 * off_tangent * v3_length(step);
 }
 
-// Or, because a bump map may have changed the normals: the line through the neighbour and the pixel beyond it leads to the pixel.
+// Or, because a bump map may have changed the normals: the line through the neighbour, a step of memory away, and the pixel
+// beyond it leads to the pixel.
+static inline bool leads_here(const float *z, const uint8_t *state, ptrdiff_t step, float limit)
+{
+    const float next = z[step], beyond = z[2 * step];
+    return next > 0.0f && beyond > 0.0f && state[step] & LENGTH_NEARLY && fabsf(*z - 2.0f * next + beyond) < limit;
+}
+
 static bool in_line(const repair *r, int x, int y, int dx, int dy, float limit)
 {
-    const build *b = r->b;
-    if (!filtered_inside(b, x + 2 * dx, y + 2 * dy)) return false;
-    const size_t i = build_index(b, x, y), next = build_index(b, x + dx, y + dy), beyond = build_index(b, x + 2 * dx, y + 2 * dy);
-    const float *z = b->position.raw;
-    return z[next] > 0.0f && z[beyond] > 0.0f && r->state[next] & PIXEL_NEARLY &&
-           fabsf(z[i] - 2.0f * z[next] + z[beyond]) < limit;
+    const size_t i = build_index(r->b, x, y);
+    return filtered_inside(r->b, x + 2 * dx, y + 2 * dy) &&
+           leads_here(r->b->position.raw + i, r->state + i, dx + dy * (ptrdiff_t)r->b->g->width, limit);
 }
+
+static float limit_of(const camera *c, float z) { return most_bend * (c->kind == CAMERA_PERSPECTIVE ? z : 1.0f) / (float)c->fx; }
 
 static bool is_clean(const repair *r, int x, int y)
 {
     const build *b = r->b;
-    const camera *c = &b->g->camera;
     const size_t i = build_index(b, x, y);
-    const float z = b->position.raw[i], limit = most_bend * (c->kind == CAMERA_PERSPECTIVE ? z : 1.0f) / (float)c->fx;
+    const float z = b->position.raw[i], limit = limit_of(&b->g->camera, z);
     if (!(r->state[i] & PIXEL_WHOLE) || !(z > 0.0f)) return false;
     bool across = in_line(r, x, y, -1, 0, limit) || in_line(r, x, y, 1, 0, limit);
     bool down = in_line(r, x, y, 0, -1, limit) || in_line(r, x, y, 0, 1, limit);
@@ -85,18 +73,49 @@ static bool is_clean(const repair *r, int x, int y)
     return across && (down || by_normals(r, &s, x, y, 0, -1) || by_normals(r, &s, x, y, 0, 1));
 }
 
+// Inside the picture, by depths: nearly all pixels.
+static void settle_inside(const repair *r, int y)
+{
+    const build *b = r->b;
+    const int width = b->g->width;
+    if (y < 2 || y + 2 >= b->g->height) return;
+    const float per_z = b->g->camera.kind == CAMERA_PERSPECTIVE ? limit_of(&b->g->camera, 1.0f) : 0.0f;
+    const float fixed = b->g->camera.kind == CAMERA_PERSPECTIVE ? 0.0f : limit_of(&b->g->camera, 1.0f);
+    const float *z = b->position.raw + build_index(b, 0, y);
+    uint8_t *state = r->state + build_index(b, 0, y);
+    for (int x = 2; x + 2 < width; x++) {
+        const float limit = per_z * z[x] + fixed;
+        if (!(state[x] & PIXEL_WHOLE) || !(z[x] > 0.0f)) continue;
+        if (!leads_here(z + x, state + x, -1, limit) && !leads_here(z + x, state + x, 1, limit)) continue;
+        if (!leads_here(z + x, state + x, -width, limit) && !leads_here(z + x, state + x, width, limit)) continue;
+        state[x] |= PIXEL_CLEAN;
+    }
+}
+
 static bool settle_row(void *context, size_t row, int worker)
 {
     (void)worker;
     const repair *r = context;
     const int y = (int)row;
-    for (int x = 0; x < r->b->g->width; x++)
-        if (is_clean(r, x, y)) r->state[build_index(r->b, x, y)] |= PIXEL_CLEAN;
+    settle_inside(r, y);
+    for (int x = 0; x < r->b->g->width; x++) {
+        uint8_t *state = &r->state[build_index(r->b, x, y)];
+        if ((*state & (PIXEL_CLEAN | PIXEL_WHOLE)) == PIXEL_WHOLE && is_clean(r, x, y)) *state |= PIXEL_CLEAN;
+    }
     return true;
 }
 
-void filtered_find_clean(repair *r)
+bool filtered_find_clean(repair *r)
 {
-    threads_for(r->b->options->threads, (size_t)r->b->g->height, look_at_row, r);
-    threads_for(r->b->options->threads, (size_t)r->b->g->height, settle_row, r);
+    const build *b = r->b;
+    const size_t total = (size_t)b->g->width * (size_t)b->g->height;
+    size_t count = 0;
+    threads_for(b->options->threads, (size_t)b->g->height, look_at_row, r);
+    threads_for(b->options->threads, (size_t)b->g->height, settle_row, r);
+    for (size_t i = 0; i < total; i++) count += !(r->state[i] & (PIXEL_CLEAN | PIXEL_EMPTY));
+    r->mixed = mem_pixels(count, sizeof *r->mixed, b->e);
+    if (!r->mixed) return false;
+    for (size_t i = 0; r->mixed_count < count; i++)
+        if (!(r->state[i] & (PIXEL_CLEAN | PIXEL_EMPTY))) r->mixed[r->mixed_count++] = i;
+    return true;
 }

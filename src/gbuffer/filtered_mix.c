@@ -46,16 +46,6 @@ int filtered_sides(repair *r, int x, int y, side list[SIDES])
     return count;
 }
 
-typedef struct values {
-    double v[7];
-} values;
-
-static values values_of(const repair *r, double scale, vec3 p, vec3 code, double alpha)
-{
-    double weight = r->b->alpha.data ? 2.0 : 0.0, unit = r->b->normal.encoding == NORMAL_SIGNED ? 1.0 : 2.0;
-    return (values){{p.x / scale, p.y / scale, p.z / scale, unit * code.x, unit * code.y, unit * code.z, weight * alpha}};
-}
-
 vec3 filtered_without(const repair *r, const stored *s, const side *far, double share)
 {
     return normals_decode(r->b, v3_scale(v3_sub(s->code, v3_scale(far->code, share)), 1.0 / (1.0 - share)));
@@ -77,32 +67,51 @@ double filtered_share(const repair *r, const stored *s, const side *far)
     return share;
 }
 
+// How much what is stored differs, squared: depth in steps of `scale`, normals and alpha.
+typedef struct difference {
+    vec3 p, code;
+    double alpha;
+} difference;
+
+typedef struct weights {
+    double p, code, alpha; // of squares
+} weights;
+
+static inline difference minus(vec3 p, vec3 code, double alpha, const side *b)
+{
+    return (difference){v3_sub(p, b->p), v3_sub(code, b->code), alpha - b->alpha};
+}
+
+static inline double dot(const weights *w, const difference *a, const difference *b)
+{
+    return w->p * v3_dot(a->p, b->p) + w->code * v3_dot(a->code, b->code) + w->alpha * a->alpha * b->alpha;
+}
+
 static mixture mix(const repair *r, const stored *s, const side *near, const side *far, bool turns)
 {
     mixture m = {.near = near, .far = far, .n = near->n, .rest = INFINITY};
-    double scale = step_of_depth * near->z, d2 = 0.0;
-    if (r->inverse) scale = step_of_depth / near->z;
-    values f = values_of(r, scale, s->p, s->code, s->alpha), a = values_of(r, scale, near->p, near->code, near->alpha),
-           b = values_of(r, scale, far->p, far->code, far->alpha);
-    for (int k = 0; k < 7; k++) m.share += (f.v[k] - a.v[k]) * (b.v[k] - a.v[k]), d2 += (b.v[k] - a.v[k]) * (b.v[k] - a.v[k]);
-    m.share = d2 > 1e-4 ? m.share / d2 : 0.0;
-    if (far->alpha < 1.0 && r->b->alpha.data)
+    const double scale = r->inverse ? step_of_depth / near->z : step_of_depth * near->z;
+    weights w = {1.0 / (scale * scale), r->b->normal.encoding == NORMAL_SIGNED ? 1.0 : 4.0, r->b->alpha.data ? 4.0 : 0.0};
+    const difference at = minus(s->p, s->code, s->alpha, near), way = minus(far->p, far->code, far->alpha, near);
+    if (far->alpha < 1.0 && r->b->alpha.data) {
         m.share = 1.0 - s->alpha;
-    else if (turns)
+    } else if (turns) {
         m.share = filtered_share(r, s, far);
-    if (!(m.share > -0.3 && m.share < 1.3)) return m;
+    } else {
+        double d2 = dot(&w, &way, &way);
+        m.share = d2 > 1e-4 ? dot(&w, &at, &way) / d2 : 0.0;
+    }
+    if (!(m.share > -0.3 && m.share < (turns ? 0.8 : 1.3))) return m;
     m.rest = 0.0;
     if (turns) {
-        if (m.share > 0.8) return m.rest = INFINITY, m;
         vec3 n = filtered_without(r, s, far, m.share);
         double odd = (1.0 - m.share) * (v3_length(n) - 1.0);
-        m.n = v3_normalize(n);
+        m.n = v3_normalize(n), w.code = 0.0; // the normal's are `odd`
         m.rest = turn * v3_dot(v3_sub(m.n, near->n), v3_sub(m.n, near->n)) + odd * odd;
     }
-    for (int k = 0; k < 7; k++) {
-        double off = f.v[k] - (1.0 - m.share) * a.v[k] - m.share * b.v[k];
-        if (!turns || k < 3 || k > 5) m.rest += off * off; // the normal's are `odd`
-    }
+    const difference off = {v3_sub(at.p, v3_scale(way.p, m.share)), v3_sub(at.code, v3_scale(way.code, m.share)),
+                            at.alpha - way.alpha * m.share};
+    m.rest += dot(&w, &off, &off);
     return m;
 }
 

@@ -215,12 +215,13 @@ void filtered_measure(repair *r)
     const build *b = r->b;
     const double box = BOX;
     crossing found[MOST_MEASURED];
-    size_t total = (size_t)b->g->width * (size_t)b->g->height, mixed = 0, count = 0;
-    for (size_t i = 0; i < total; i++) mixed += !(r->state[i] & PIXEL_CLEAN) && b->g->depth[i] > 0.0f;
-    size_t stride = mixed / MOST_TRIED + 1, at = 0;
-    for (size_t i = 0; r->lengths && i < total && count < MOST_MEASURED; i++) {
-        if (r->state[i] & PIXEL_CLEAN || !(b->g->depth[i] > 0.0f) || at++ % stride != 0) continue;
-        count += cross(r, (int)(i % (size_t)b->g->width), (int)(i / (size_t)b->g->width), &found[count]);
+    size_t seen = 0, count = 0, at = 0, width_in = (size_t)b->g->width;
+    for (size_t k = 0; k < r->mixed_count; k++) seen += b->g->depth[r->mixed[k]] > 0.0f;
+    size_t stride = seen / MOST_TRIED + 1;
+    for (size_t k = 0; r->lengths && k < r->mixed_count && count < MOST_MEASURED; k++) {
+        const size_t i = r->mixed[k];
+        if (!(b->g->depth[i] > 0.0f) || at++ % stride != 0) continue;
+        count += cross(r, (int)(i % width_in), (int)(i / width_in), &found[count]);
     }
     if (count < LEAST_MEASURED) return;
     double width = fmin(fmax(median_of(found, count, NULL), least_width), most_width);

@@ -29,15 +29,22 @@ vec3 normals_decode(const build *b, vec3 code)
     return b->normal.there ? m3_apply(b->normal.to_camera, encoding_decode(b->normal.encoding, code)) : v3(0, 0, 0);
 }
 
-static bool read_stored(const build *b, vec3 v, vec3 *n)
+// *square: of the length that v decodes to.
+static bool read_stored(const build *b, vec3 v, vec3 *n, double *square)
 {
+    *square = 0.0;
     if (v3_length(v) > b->normal.longest) return false;
     v = encoding_decode(b->normal.encoding, v);
+    *square = v3_dot(v, v);
     *n = v3_normalize(m3_apply(b->normal.to_camera, v));
     return v3_dot(*n, *n) > 0.5;
 }
 
-bool normals_read(const build *b, int x, int y, vec3 *n) { return b->normal.there && read_stored(b, stored(b, x, y), n); }
+bool normals_read(const build *b, int x, int y, vec3 *n)
+{
+    double ignored;
+    return b->normal.there && read_stored(b, stored(b, x, y), n, &ignored);
+}
 
 // On a plane 1/z is linear across a perspective picture, z across an orthographic one.
 static double linear(const camera *c, double z) { return c->kind == CAMERA_PERSPECTIVE ? 1.0 / z : z; }
@@ -84,11 +91,11 @@ vec3 normals_from_depth(const build *b, const float *depth, int x, int y)
     return v3_dot(n, ray) > 0.0 ? v3_scale(n, -1.0) : n;
 }
 
-// v: as stored.
-static vec3 normal_of(build *b, int x, int y, vec3 v)
+// v: as stored. *square: of the length that it decodes to.
+static vec3 normal_of(build *b, int x, int y, vec3 v, double *square)
 {
     vec3 n;
-    if (!b->normal.there || !read_stored(b, v, &n)) {
+    if (!b->normal.there || !read_stored(b, v, &n, square)) {
         if (b->normal.there) atomic_fetch_add(&b->defects.normals, 1);
         return normals_from_depth(b, b->g->depth, x, y);
     }
@@ -101,14 +108,22 @@ static vec3 normal_of(build *b, int x, int y, vec3 v)
     return agrees < (away <= facing_away ? opposite : 0.0) ? v3_scale(n, -1.0) : n;
 }
 
+static uint8_t length_bits(double square)
+{
+    const bool nearly = square >= 0.98 * 0.98 && square <= 1.02 * 1.02, whole = square >= 0.99 * 0.99 && square <= 1.01 * 1.01;
+    return (uint8_t)((nearly ? LENGTH_NEARLY : 0) | (whole ? LENGTH_WHOLE : 0));
+}
+
 static void make_block(build *b, int x, int y, int count)
 {
     float v[3][PLANE_BLOCK] = {{0}};
     for (int c = 0; c < 3 && b->normal.there; c++) plane_fetch(&b->normal.n[c], x, y, count, v[c]);
     for (int k = 0; k < count; k++) {
         size_t i = build_index(b, x + k, y);
+        double square = 0.0;
         vec3 n = v3(0, 0, 0), code = v3((double)v[0][k], (double)v[1][k], (double)v[2][k]);
-        if (b->g->depth[i] > 0.0f) n = normal_of(b, x + k, y, code);
+        if (b->g->depth[i] > 0.0f) n = normal_of(b, x + k, y, code, &square);
+        if (b->normal.lengths) b->normal.lengths[i] = length_bits(square);
         float *out = b->g->normal + 4 * i;
         out[0] = (float)n.x, out[1] = (float)n.y, out[2] = (float)n.z, out[3] = 0.0f;
     }
