@@ -2,6 +2,7 @@
 #include "gbuffer/filtered.h"
 
 static const double turn = 0.2;           // weight of a turn of the normal, squared, that only the pixel itself tells of
+static const double same_plane = 1e-5;    // of the depth, and of the normal, that pixels of one plane differ by
 static const double step_of_depth = 0.05; // of the depth, that counts as much as normals at right angles
 
 const int filtered_step[DIRECTIONS][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
@@ -22,24 +23,44 @@ double filtered_carried(const build *b, int u, int v, vec3 n, int x, int y)
     return z > 0.5 * at.z && z < 2.0 * at.z ? z : at.z;
 }
 
+static bool transparent(const repair *r, int u, int v)
+{
+    const size_t i = build_index(r->b, u, v);
+    if (r->state[i] & PIXEL_WHOLE) return false;
+    return !(r->b->g->depth[i] > 0.0f) || (r->b->alpha.data && !(plane_get(&r->b->alpha, u, v) >= 0.5));
+}
+
+// Adds the clean pixel (u, v), a step or more away. Of one plane's pixels the nearest counts.
+static int add_side(repair *r, int x, int y, int u, int v, side list[SIDES], int count)
+{
+    const stored *at = filtered_at(r, u, v);
+    side s = {.code = at->code, .n = at->n, .alpha = 1.0, .u = u, .v = v};
+    s.z = filtered_carried(r->b, u, v, made_normal(r->b, u, v), x, y);
+    for (int k = 0; k < count; k++) {
+        vec3 turned = v3_sub(list[k].n, s.n);
+        if (fabs(list[k].z - s.z) > same_plane * s.z || v3_dot(turned, turned) > same_plane * same_plane) continue;
+        if (hypot(u - x, v - y) >= hypot(list[k].u - x, list[k].v - y)) return count;
+        s.p = filtered_values(r, x, y, s.z);
+        list[k] = s;
+        return count;
+    }
+    s.p = filtered_values(r, x, y, s.z);
+    list[count] = s;
+    return count + 1;
+}
+
 int filtered_sides(repair *r, int x, int y, side list[SIDES])
 {
     const int(*step)[2] = filtered_step;
-    const build *b = r->b;
     int count = 0;
     bool open = false;
     for (int k = 0; k < DIRECTIONS; k++)
         for (int d = 1; d <= FILTER_REACH; d++) {
             int u = x + d * step[k][0], v = y + d * step[k][1];
-            if (!filtered_inside(b, u, v)) break;
-            size_t i = build_index(b, u, v);
-            open = open || !(b->g->depth[i] > 0.0f) || (b->alpha.data && !(plane_get(&b->alpha, u, v) >= 0.5));
-            if (!(r->state[i] & PIXEL_CLEAN)) continue;
-            const stored *at = filtered_at(r, u, v);
-            side s = {.code = at->code, .n = at->n, .alpha = 1.0, .u = u, .v = v};
-            s.z = filtered_carried(b, u, v, made_normal(b, u, v), x, y);
-            s.p = filtered_values(r, x, y, s.z);
-            list[count++] = s;
+            if (!filtered_inside(r->b, u, v)) break;
+            open = open || transparent(r, u, v);
+            if (!filtered_clean(r, u, v)) continue;
+            count = add_side(r, x, y, u, v, list, count);
             break;
         }
     if (open && count > 0) list[count++] = (side){.p = r->nothing.p, .code = r->nothing.code, .n = r->nothing.n};
