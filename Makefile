@@ -24,7 +24,7 @@ DEPS_BUILD := gcc g++ pkg-config libopenexr-dev libopenimageio-dev libopencolori
               libepoxy-dev libdeflate-dev libjson-c-dev libxxhash-dev
 DEPS_CHECK := patchelf libcmocka-dev glslang-tools openimageio-tools openexr clang-format blender man-db parallel python3 python3-numpy
 DEPS_BENCH := gnuplot-nox
-DEPS_HOSTS := blender openimageio-tools openexr imagemagick libmagickcore-6.q16-6-extra/libmagickcore-7.q16-10-extra
+DEPS_HOSTS := blender openimageio-tools openexr imagemagick libmagickcore-6.q16-6-extra/libmagickcore-6.q16-7-extra/libmagickcore-7.q16-10-extra
 DEPS_FARM  := blender slurm-wlm munge parallel python3-yaml openimageio-tools
 
 PKGS       := OpenEXR epoxy egl libdeflate json-c

@@ -1,14 +1,24 @@
-# Debian releases in folders, for scripts run as root: root_make, root_run, root_leave.
+# Releases of Debian and Ubuntu in folders, for scripts run as root: root_make, root_run, root_leave.
 # ROOT_MIRROR: where packages come from. ROOT_KEEP: a folder that keeps the minimal systems for the next time.
 
-# root_make SUITE FOLDER PACKAGE...: a minimal Debian with the packages named, and /proc and /dev mounted.
+# root_bootstrap SUITE FOLDER. Ubuntu has a mirror of its own, wants universe beside main, and is set up the same way in all releases,
+# which a debootstrap of Debian's does not know by name.
+root_bootstrap() {
+    case $1 in
+    jammy | noble | questing | resolute)
+        debootstrap --variant=minbase --components=main,universe "$1" "$2" "${ROOT_MIRROR-http://archive.ubuntu.com/ubuntu}" gutsy ;;
+    *) debootstrap --variant=minbase "$1" "$2" "${ROOT_MIRROR-http://deb.debian.org/debian}" ;;
+    esac
+}
+
+# root_make SUITE FOLDER PACKAGE...: a minimal system with the packages named, and /proc and /dev mounted.
 root_make() {
     suite=$1 root=$2
     shift 2
     if [ -n "${ROOT_KEEP-}" ] && [ -d "$ROOT_KEEP/$suite" ]; then
         cp -a "$ROOT_KEEP/$suite" "$root"
     else
-        debootstrap --variant=minbase "$suite" "$root" "${ROOT_MIRROR-http://deb.debian.org/debian}" >"$root.log" 2>&1 || {
+        root_bootstrap "$suite" "$root" >"$root.log" 2>&1 || {
             tail -5 "$root.log" >&2
             return 1
         }
