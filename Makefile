@@ -92,7 +92,7 @@ help:
 	@echo 'make dist     an archive that runs where it is unpacked; make check-dist: in fresh Debian roots, as root'
 	@echo 'make dist-oldest OPENEXR=folder IMATH=folder   the same built in Debian 11, from sources of OpenEXR 3 and Imath, as root'
 	@echo 'make deb      Debian packages of the committed source: ssdo-filter, libssdo0, libssdo-dev'
-	@echo 'make check-systems SYSTEMS="bookworm trixie"   both commands of README in fresh Debian roots, as root; an hour'
+	@echo 'make check-systems SYSTEMS="bookworm trixie noble"   both commands of README in fresh roots, as root; an hour'
 	@echo 'make check-compilers COMPILERS="gcc-14 clang-19"   the tree by each of them, without a warning'
 	@echo 'make check-openexr VERSIONS="folder ..."   tests against other versions of OpenEXR, and which reads which compression'
 	@echo 'make all | lint | format | install PREFIX= DESTDIR= | uninstall | clean'

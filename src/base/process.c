@@ -5,19 +5,22 @@
 #include <signal.h>
 #include <unistd.h>
 
-// FNV-1a of boot and namespace.
+// FNV-1a, begun or carried on.
+static uint64_t hash(uint64_t h, const char *text, ssize_t n)
+{
+    for (ssize_t i = 0; i < n; i++) h = (h ^ (unsigned char)text[i]) * 1099511628211u;
+    return h;
+}
+
+// Of boot and namespace.
 uint64_t process_place(void)
 {
-    static const char *const id = "/proc/sys/kernel/random/boot_id", *const space = "/proc/self/ns/pid";
-    char text[128] = "";
-    int fd = open(id, O_RDONLY | O_CLOEXEC);
-    ssize_t n = fd >= 0 ? read(fd, text, 64) : -1;
+    char boot[64], space[64];
+    int fd = open("/proc/sys/kernel/random/boot_id", O_RDONLY | O_CLOEXEC);
+    ssize_t n = fd >= 0 ? read(fd, boot, sizeof boot) : -1;
     if (fd >= 0) close(fd);
-    ssize_t m = n > 0 ? readlink(space, text + n, sizeof text - (size_t)n) : -1;
-    if (m <= 0) return 0;
-    uint64_t h = 14695981039346656037u;
-    for (ssize_t i = 0; i < n + m; i++) h = (h ^ (unsigned char)text[i]) * 1099511628211u;
-    return h;
+    ssize_t m = readlink("/proc/self/ns/pid", space, sizeof space);
+    return n > 0 && m > 0 ? hash(hash(14695981039346656037u, boot, n), space, m) : 0;
 }
 
 bool process_is_gone(long pid, uint64_t place)
