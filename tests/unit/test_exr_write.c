@@ -316,7 +316,8 @@ static void test_other_programs_read_it(void **state)
         const char *path = in_scratch("o.exr"), *back = in_scratch("b.exr");
         make_image(&im, 77, 65, kinds[i % 5], i < 5);
         assert_ok(exrio_write(path, &im.part, 1, 2, &e), e);
-        if (info) assert_int_equal(run_command("exrinfo -s '%s' >/dev/null 2>&1", path), 0);
+        // By what it prints: that of Ubuntu 24.04 ends with 25 whatever it has read.
+        if (info) assert_int_equal(run_command("exrinfo -s '%s' 2>&1 | grep -q \"'normal.X': float\"", path), 0);
         if (oiiotool) assert_int_equal(run_command("oiiotool --hash '%s' >/dev/null 2>&1", path), 0);
         if (maketiled) {
             assert_int_equal(run_command("exrmaketiled -z none '%s' '%s'", path, back), 0);
