@@ -291,11 +291,12 @@ static bool find_hidden_light(pass_context *c, error *e)
 // from the blocked ones. One march makes both, unless the bounce gathers the filtered sky light itself.
 //
 // On a smaller frame the pixels are the receivers; what blocks and sends light is the whole frame.
-bool arc_run_light(pass_context *c, bool sky, bool bounce, error *e)
+bool arc_run_light(pass_context *c, const arc_light *what, error *e)
 {
+    const bool sky = what->sky, bounce = what->bounce, visibility = sky && what->visibility;
     pass_context *seen = c->whole ? c->whole : c;
     // A beauty is the light that surfaces send. Our own radiance is light before albedo.
-    bool exitant = !c->set.relight, visibility = sky && c->want_visibility;
+    bool exitant = !c->set.relight;
     const gpu_image *sender = &seen->image[exitant ? IMAGE_BEAUTY
                                            : sky   ? IMAGE_FIRST_LIGHT
                                                    : IMAGE_RADIANCE],
@@ -321,7 +322,7 @@ bool arc_run_light(pass_context *c, bool sky, bool bounce, error *e)
     variant_add(&v, arc_closes_outside(c), "OUTSIDE");
     variant_add(&v, arc_has_surround(c), "SURROUND");
     variant_add(&v, c->whole != NULL, "RECEIVERS");
-    variant_add(&v, c->at_lone, "LONE");
+    variant_add(&v, what->lone != NULL, "LONE");
     pass_call call = {
         .program = sky ? "arc_light" : "arc_bounce",
         .label = sky && bounce ? "arc light+bounce"
@@ -342,15 +343,25 @@ bool arc_run_light(pass_context *c, bool sky, bool bounce, error *e)
                    {"radiance_image", &c->image[IMAGE_RADIANCE]},
                    {"indirect_image", &c->image[IMAGE_INDIRECT]}},
     };
-    if (!c->at_lone) return arc_run_as_adaptive(c, &call, &params, e);
+    if (!what->lone) return arc_run_as_adaptive(c, &call, &params, e);
     call.params = &params, call.params_size = sizeof params;
-    return pass_at_lone(c, &call,
+    return pass_at_lone(c, what->lone, &call,
                         (sky ? IMAGE_BIT(IMAGE_RADIANCE) : 0) | (visibility ? IMAGE_BIT(IMAGE_VISIBILITY) : 0) |
                             (bounce ? IMAGE_BIT(IMAGE_INDIRECT) : 0),
                         e);
 }
 
-static bool light(pass_context *c, error *e) { return arc_run_light(c, true, c->want_indirect, e); }
+// Of what a step asks for.
+static arc_light asked(const pass_context *c, bool sky, bool bounce)
+{
+    return (arc_light){.sky = sky, .bounce = bounce, .visibility = c->want_visibility, .lone = c->at_lone ? c->lone : NULL};
+}
+
+static bool light(pass_context *c, error *e)
+{
+    const arc_light what = asked(c, true, c->want_indirect);
+    return arc_run_light(c, &what, e);
+}
 
 static bool run(pass_context *c, error *e)
 {
@@ -360,7 +371,8 @@ static bool run(pass_context *c, error *e)
 
 static bool run_bounce(pass_context *c, error *e)
 {
-    return (c->image[IMAGE_INDIRECT].id && !c->at_lone) || arc_run_light(c, false, true, e);
+    const arc_light what = asked(c, false, true);
+    return (c->image[IMAGE_INDIRECT].id && !what.lone) || arc_run_light(c, &what, e);
 }
 
 // Of marches for light: what they know beyond the frame, and of which pixels.

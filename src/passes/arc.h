@@ -29,8 +29,13 @@ bool arc_run_occlusion(pass_context *c, const char *blocked, error *e);
 void arc_set_grid(arc_params *p, int slices, int steps);
 arc_params arc_params_of_grid(const pass_context *c, int slices, int steps);
 
+typedef struct arc_light {
+    bool sky, bounce, visibility; // visibility goes with sky only
+    const pixel_list *lone;       // borrowed; NULL: of all pixels, else of these alone
+} arc_light;
+
 // Makes light, the bounce or both at once. Both need the light that surfaces send: without `exitant` settings, the first light.
-bool arc_run_light(pass_context *c, bool sky, bool bounce, error *e);
+bool arc_run_light(pass_context *c, const arc_light *what, error *e);
 // Fills IMAGE_FIRST_LIGHT of the frame that the marches of `c` see, if it is not there.
 bool arc_first_light(pass_context *c, error *e);
 

@@ -8,19 +8,14 @@ enum { BLUR = 1 };
 // Radiance of the smaller frame `q`, brought to the frame of `c`.
 static bool light_from(pass_context *q, pass_context *c, error *e)
 {
-    return arc_run_light(q, true, false, e) && pass_blur(q, BLUR, NULL, NULL, &q->image[IMAGE_RADIANCE], e) &&
+    return arc_run_light(q, &(arc_light){.sky = true}, e) && pass_blur(q, BLUR, NULL, NULL, &q->image[IMAGE_RADIANCE], e) &&
            pass_upsample(c, q, IMAGE_BIT(IMAGE_RADIANCE), e);
 }
 
 // The same of the pixels of `c` whose surface the smaller frame does not show.
 static bool light_lone(pass_context *c, const pixel_list *lone, error *e)
 {
-    const pixel_list *before = c->lone;
-    bool visibility = c->want_visibility;
-    c->lone = lone, c->at_lone = true, c->want_visibility = false;
-    bool ok = !lone || lone->count == 0 || arc_run_light(c, true, false, e);
-    c->lone = before, c->at_lone = false, c->want_visibility = visibility;
-    return ok;
+    return !lone || lone->count == 0 || arc_run_light(c, &(arc_light){.sky = true, .lone = lone}, e);
 }
 
 // In the place of the radiance of `c`, which is not made yet.

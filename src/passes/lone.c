@@ -9,9 +9,8 @@ enum { GROUP = GROUP_SIDE * GROUP_SIDE, BATCH = 128 * GROUP };
 static const float SHARPNESS = 1.0f;
 
 // Batches stop soon when the job is stopped.
-static bool run_over(pass_context *c, const gpu_buffer *lone, pass_call call, error *e)
+static bool run_over(pass_context *c, size_t count, const gpu_buffer *lone, pass_call call, error *e)
 {
-    size_t count = c->lone->count;
     call.untimed = true;
     int free_place = 0;
     while (call.buffers[free_place].name) free_place++;
@@ -25,16 +24,17 @@ static bool run_over(pass_context *c, const gpu_buffer *lone, pass_call call, er
     return true;
 }
 
-static bool filter(pass_context *c, const gpu_buffer *lone, const gpu_image *scalar, const gpu_image *colour, error *e)
+static bool filter(pass_context *c, size_t count, const gpu_buffer *lone, const gpu_image *scalar, const gpu_image *colour,
+                   error *e)
 {
     gpu_buffer filtered = {0};
     const blur_params params = {.radius = c->set.blur, .sharpness = SHARPNESS};
-    bool ok = gpu_buffer_make(c->g, &filtered, NULL, c->lone->count * 4 * sizeof(float), "single pixels", e);
+    bool ok = gpu_buffer_make(c->g, &filtered, NULL, count * 4 * sizeof(float), "single pixels", e);
     for (int scatter = 0; ok && scatter < 2; scatter++) {
         variant v = {{0}};
         variant_add(&v, scalar && scalar->id, "VISIBILITY");
         variant_add(&v, scatter, "SCATTER");
-        ok = run_over(c, lone,
+        ok = run_over(c, count, lone,
                       (pass_call){.program = "lone_blur",
                                   .variant = v.words,
                                   PASS_PARAMS(params),
@@ -46,16 +46,17 @@ static bool filter(pass_context *c, const gpu_buffer *lone, const gpu_image *sca
     return ok;
 }
 
-bool pass_at_lone(pass_context *c, const pass_call *march, image_set made, error *e)
+bool pass_at_lone(pass_context *c, const pixel_list *list, const pass_call *march, image_set made, error *e)
 {
     gpu_buffer lone = {0};
     pass_timing clock = pass_clock(c, "refine");
-    bool ok = gpu_buffer_make(c->g, &lone, c->lone->pixels, c->lone->count * sizeof *c->lone->pixels, "single pixels", e) &&
-              run_over(c, &lone, *march, e);
+    bool ok = gpu_buffer_make(c->g, &lone, list->pixels, list->count * sizeof *list->pixels, "single pixels", e) &&
+              run_over(c, list->count, &lone, *march, e);
     if (ok && c->set.blur > 0 && made & IMAGE_BIT(IMAGE_RADIANCE))
-        ok = filter(c, &lone, made & IMAGE_BIT(IMAGE_VISIBILITY) ? &c->image[IMAGE_VISIBILITY] : NULL, &c->image[IMAGE_RADIANCE],
-                    e);
-    if (ok && c->set.blur > 0 && made & IMAGE_BIT(IMAGE_INDIRECT)) ok = filter(c, &lone, NULL, &c->image[IMAGE_INDIRECT], e);
+        ok = filter(c, list->count, &lone, made & IMAGE_BIT(IMAGE_VISIBILITY) ? &c->image[IMAGE_VISIBILITY] : NULL,
+                    &c->image[IMAGE_RADIANCE], e);
+    if (ok && c->set.blur > 0 && made & IMAGE_BIT(IMAGE_INDIRECT))
+        ok = filter(c, list->count, &lone, NULL, &c->image[IMAGE_INDIRECT], e);
     ok = ok && (!c->timing || gpu_finish(c->g, "refine", e));
     pass_clock_stop(c, clock);
     gpu_buffer_free(&lone);

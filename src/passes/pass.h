@@ -230,9 +230,9 @@ typedef struct pass_denoising {
 bool pass_denoise_across(pass_context *c, const pass_denoising *d, error *e); // one direction of it, then the other
 bool pass_denoise_down(pass_context *c, const pass_denoising *d, error *e);
 bool pass_denoise(pass_context *c, error *e); // occlusion: in place
-// Runs a march at the frame's lone pixels (pass_context.lone), then, unless there is no blur, the filter of pass_blur at those
-// pixels of what it `made`: radiance, visibility, indirect.
-bool pass_at_lone(pass_context *c, const pass_call *march, image_set made, error *e);
+// Runs a march at the pixels of a list, then, unless there is no blur, the filter of pass_blur at those pixels of what it `made`:
+// radiance, visibility, indirect.
+bool pass_at_lone(pass_context *c, const pixel_list *lone, const pass_call *march, image_set made, error *e);
 // In place, over `radius` pixels; NULL = none.
 bool pass_blur(pass_context *c, int radius, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e);
 // Brings layers of a frame of half the size (gbuffer/half_size.h) to the size of `c`: the images of `which` that `small` has and
