@@ -88,6 +88,7 @@ help:
 	@echo 'make bench-paper   cost of ssdo'\''s light and bounce beside the paper, of s3ho beside hemisphere'
 	@echo 'make bench-sampling   error by the sequence that slices, steps and sectors draw from, and by the spacing of steps'
 	@echo 'make bench-motion  noise over a shot and on flat patches (bench-motion-readme: into tests/bench/RESULTS.md)'
+	@echo 'make bench-flat    what is left of the noise on flat patches of the samples (bench-flat-readme: into tests/bench/RESULTS.md)'
 	@echo 'make bench-frame   cost of a whole frame beside copying its file (bench-frame-readme: into tests/bench/RESULTS.md)'
 	@echo 'make dist     an archive that runs where it is unpacked; make check-dist: in fresh Debian roots, as root'
 	@echo 'make dist-oldest OPENEXR=folder IMATH=folder   the same built in Debian 11, from sources of OpenEXR 3 and Imath, as root'
@@ -285,7 +286,7 @@ $(LISTS): $(BUILD)/tests/limits/list_variants.o $(BUILD)/rooms.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
 # The benches are compiled, so that they still do.
-unit: $(UNIT) $(HARD) $(REPLAY) $(FAULT) $(LISTS) $(GPU_TOOLS) $(BUILD)/tests/bench/motion $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/bench/*.c))
+unit: $(UNIT) $(HARD) $(REPLAY) $(FAULT) $(LISTS) $(GPU_TOOLS) $(BUILD)/tests/bench/motion $(BUILD)/tests/bench/score $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/bench/*.c))
 
 # Real schedulers on this machine (tests/farm/check.sh); what it starts, it stops.
 .PHONY: check-farm
@@ -402,6 +403,14 @@ bench-motion: deps-bench
 	@sh tests/bench/motion.sh $(BUILD) $(OPTIONS)
 bench-motion-readme:
 	@sh tests/bench/paste.sh $(BUILD)/bench/motion.md bench-motion tests/bench/RESULTS.md
+
+# The same on the flat patches of the rendered samples: BUILD/bench/flat.md.
+.PHONY: bench-flat bench-flat-readme
+bench-flat: deps-bench
+	@$(MAKE) $(JOBS) --no-print-directory all $(BUILD)/tests/bench/motion $(BUILD)/tests/bench/score
+	@sh tests/bench/flat.sh $(BUILD) $(OPTIONS)
+bench-flat-readme:
+	@sh tests/bench/paste.sh $(BUILD)/bench/flat.md bench-flat tests/bench/RESULTS.md
 
 # Puts the last bench-frame's tables into tests/bench/RESULTS.md, between the marks.
 .PHONY: bench-frame-readme

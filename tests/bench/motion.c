@@ -2,6 +2,8 @@
 //
 //     motion write WIDTH HEIGHT DIR       the frames' G-buffers, DIR/in.1.exr ...
 //     motion score WIDTH HEIGHT DIR NAME  of DIR/NAME.1.exr ..., a line for each layer: its name, change, residual
+//     motion flat SAMPLES DIR             of DIR/NAME.exr of every rendered sample, for each layer: sample, layer, residual,
+//     beyond the truth's, windows
 //
 // Change: surface points are followed by their positions. The scene and its light stand still and the layers do not depend on the
 // view, so in truth nothing at a point changes. What changes from frame to frame is the noise, and what the view shows otherwise:
@@ -111,44 +113,78 @@ static bool is_flat(const picture *g, int x, int y)
     return true;
 }
 
-// Squared residual of a window beside its best linear fit, over its squared mean.
-static double window_residual(const float *values, int width, int x, int y)
+typedef struct window {
+    double mean, along, down; // sums over the window: of values, and of values times the coordinates about its middle
+} window;
+
+static const double PIXELS = WINDOW * WINDOW, MOMENT = WINDOW * WINDOW * (WINDOW * WINDOW - 1) / 12.0; // of a coordinate
+
+static double at(const float *values, int width, int x, int y) { return (double)values[(size_t)y * (size_t)width + (size_t)x]; }
+
+static window window_at(const float *values, int width, int x, int y)
 {
-    double sum = 0.0, along = 0.0, down = 0.0, squares = 0.0;
-    const double n = WINDOW * WINDOW, moment = n * (WINDOW * WINDOW - 1) / 12.0; // of a coordinate about the middle
+    window w = {0};
     for (int v = 0; v < WINDOW; v++)
         for (int u = 0; u < WINDOW; u++) {
-            double value = (double)values[(size_t)(y + v) * (size_t)width + (size_t)(x + u)];
-            sum += value, squares += value * value;
-            along += value * (u - WINDOW / 2), down += value * (v - WINDOW / 2);
+            double value = at(values, width, x + u, y + v);
+            w.mean += value / PIXELS, w.along += value * (u - WINDOW / 2), w.down += value * (v - WINDOW / 2);
         }
-    double mean = sum / n, left = squares - n * mean * mean - (along * along + down * down) / moment;
-    return mean > 0.0 ? fmax(left, 0.0) / n / (mean * mean) : 0.0;
+    return w;
+}
+
+// Mean product of what is left of a and b on a window beside their best linear fits.
+static double left_of(const float *a, const float *b, int width, int x, int y)
+{
+    window p = window_at(a, width, x, y), q = window_at(b, width, x, y);
+    double products = 0.0;
+    for (int v = y; v < y + WINDOW; v++)
+        for (int u = x; u < x + WINDOW; u++) products += at(a, width, u, v) * at(b, width, u, v);
+    return (products - PIXELS * p.mean * q.mean - (p.along * q.along + p.down * q.down) / MOMENT) / PIXELS;
+}
+
+typedef struct residual {
+    double squares, windows;
+} residual;
+
+// Of the fields a and b, over the mean of `values`.
+static residual residual_between(const picture *g, const float *values, const float *a, const float *b)
+{
+    residual r = {0};
+    for (int y = 0; y + WINDOW <= g->height; y += WINDOW)
+        for (int x = 0; x + WINDOW <= g->width; x += WINDOW) {
+            double mean = window_at(values, g->width, x, y).mean;
+            if (!(mean > 0.0) || !is_flat(g, x, y)) continue;
+            r.squares += left_of(a, b, g->width, x, y) / (mean * mean), r.windows += 1.0;
+        }
+    return r;
 }
 
 static double residual_of(const shot *s)
 {
-    double sum = 0.0, count = 0.0;
+    double squares = 0.0, windows = 0.0;
     for (int f = 0; f < FRAMES; f++) {
-        const picture *g = &s->picture[f];
-        for (int y = 0; y + WINDOW <= g->height; y += WINDOW)
-            for (int x = 0; x + WINDOW <= g->width; x += WINDOW)
-                if (is_flat(g, x, y)) sum += window_residual(s->values[f], g->width, x, y), count += 1.0;
+        residual r = residual_between(&s->picture[f], s->values[f], s->values[f], s->values[f]);
+        squares += r.squares, windows += r.windows;
     }
-    return sqrt(sum / count);
+    return sqrt(squares / windows);
 }
 
 // ---- the layers of a run
 
+static float *luminance_of(const float *from, size_t channels, size_t pixels)
+{
+    float *out = malloc(pixels * sizeof *out);
+    for (size_t i = 0; out && i < pixels; i++) {
+        const float *p = from + channels * i;
+        out[i] = channels == 1 ? *p : (float)luminance((double)p[0], (double)p[1], (double)p[2]);
+    }
+    return out;
+}
+
 static float *luminances(const char *path, int layer, size_t pixels, error *e)
 {
-    size_t letters = strlen(layers[layer].letters);
     float *read = sample_read(path, layers[layer].name, layers[layer].letters, e),
-          *out = read ? malloc(pixels * sizeof *out) : NULL;
-    for (size_t i = 0; out && i < pixels; i++) {
-        const float *p = read + letters * i;
-        out[i] = letters == 1 ? *p : (float)luminance((double)p[0], (double)p[1], (double)p[2]);
-    }
+          *out = read ? luminance_of(read, strlen(layers[layer].letters), pixels) : NULL;
     free(read);
     return out;
 }
@@ -176,15 +212,80 @@ static bool score_shot(shot *s, const char *dir, const char *name, error *e)
     return ok;
 }
 
+// ---- the flat patches of the rendered samples
+
+static void subtract(float *a, const float *b, size_t n)
+{
+    for (size_t i = 0; i < n; i++) a[i] = b[i] - a[i];
+}
+
+// A shadow's edge is no noise: what is left of the layer's difference to the truth, too. The truth is rendered twice, so that its
+// own noise is left out: it is not the same in both.
+static bool flat_layer(const sample *s, const picture *g, int layer, const char *path, error *e)
+{
+    const float *truth[] = {layer == 0   ? s->ao[0]
+                            : layer == 1 ? s->direct[0]
+                                         : s->indirect[0],
+                            layer == 0   ? s->ao[1]
+                            : layer == 1 ? s->direct[1]
+                                         : s->indirect[1]};
+    size_t pixels = (size_t)s->width * (size_t)s->height, channels = strlen(layers[layer].letters);
+    float *values = luminances(path, layer, pixels, e), *a = luminance_of(truth[0], channels, pixels),
+          *b = luminance_of(truth[1], channels, pixels);
+    bool ok = values && a && b;
+    if (ok) {
+        residual own = residual_between(g, values, values, values);
+        subtract(a, values, pixels), subtract(b, values, pixels);
+        residual beyond = residual_between(g, values, a, b);
+        if (own.windows > 0.0)
+            printf("%s\t%s\t%.4f\t%.4f\t%.0f\n", s->name, layers[layer].name, sqrt(own.squares / own.windows),
+                   sqrt(fmax(beyond.squares, 0.0) / beyond.windows), own.windows);
+    }
+    free(values), free(a), free(b);
+    return ok;
+}
+
+static bool flat_sample(sample *s, const char *dir, error *e)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%.512s/%.31s.exr", dir, s->name);
+    size_t pixels = (size_t)s->width * (size_t)s->height;
+    float *position = sample_read(s->file, "ViewLayer.Position", "XYZ", e);
+    unsigned char *valid = calloc(pixels, 1);
+    picture g = {s->width, s->height, position, s->normal, NULL, s->depth, valid};
+    bool ok = position && valid;
+    for (size_t i = 0; ok && i < pixels; i++) valid[i] = s->scored[i];
+    for (int layer = 0; ok && layer < LAYERS; layer++) ok = flat_layer(s, &g, layer, path, e);
+    free(position), free(valid);
+    return ok;
+}
+
+static bool flat_samples(const char *samples, const char *dir, error *e)
+{
+    static sample list[SAMPLE_MAX];
+    int n = samples_list(samples, list, SAMPLE_MAX, e);
+    bool ok = n > 0;
+    for (int i = 0; ok && i < n; i++) {
+        ok = sample_load(&list[i], e) && flat_sample(&list[i], dir, e);
+        sample_free(&list[i]);
+    }
+    return ok;
+}
+
 int main(int argc, char **argv)
 {
     static shot s;
     error e = {0};
     char text[1024];
-    bool writes = argc == 5 && strcmp(argv[1], "write") == 0, scores = argc == 6 && strcmp(argv[1], "score") == 0;
-    if (!writes && !scores) return 2;
-    set_cameras(&s, atoi(argv[2]), atoi(argv[3]));
-    bool ok = writes ? write_shot(&s, argv[4], &e) : score_shot(&s, argv[4], argv[5], &e);
+    bool writes = argc == 5 && strcmp(argv[1], "write") == 0, scores = argc == 6 && strcmp(argv[1], "score") == 0,
+         flat = argc == 4 && strcmp(argv[1], "flat") == 0, ok;
+    if (!writes && !scores && !flat) return 2;
+    if (flat) {
+        ok = flat_samples(argv[2], argv[3], &e);
+    } else {
+        set_cameras(&s, atoi(argv[2]), atoi(argv[3]));
+        ok = writes ? write_shot(&s, argv[4], &e) : score_shot(&s, argv[4], argv[5], &e);
+    }
     err_format(&e, text, sizeof text);
     if (!ok) fprintf(stderr, "motion: %s\n", text);
     return ok ? 0 : 1;
