@@ -89,6 +89,7 @@ help:
 	@echo 'make bench-sampling   error by the sequence that slices, steps and sectors draw from, and by the spacing of steps'
 	@echo 'make bench-motion  noise over a shot and on flat patches (bench-motion-readme: into tests/bench/RESULTS.md)'
 	@echo 'make bench-flat    what is left of the noise on flat patches of the samples (bench-flat-readme: into tests/bench/RESULTS.md)'
+	@echo 'make bench-front OLD=program   error against the cost of a whole job, beside an older program'
 	@echo 'make bench-frame   cost of a whole frame beside copying its file (bench-frame-readme: into tests/bench/RESULTS.md)'
 	@echo 'make dist     an archive that runs where it is unpacked; make check-dist: in fresh Debian roots, as root'
 	@echo 'make dist-oldest OPENEXR=folder IMATH=folder   the same built in Debian 11, from sources of OpenEXR 3 and Imath, as root'
@@ -411,6 +412,15 @@ bench-flat: deps-bench
 	@sh tests/bench/flat.sh $(BUILD) $(OPTIONS)
 bench-flat-readme:
 	@sh tests/bench/paste.sh $(BUILD)/bench/flat.md bench-flat tests/bench/RESULTS.md
+
+# Error against the time of a whole job, beside that of an older program OLD: BUILD/bench/front.md, front.png.
+.PHONY: bench-front bench-front-readme
+bench-front: deps-bench
+	@$(MAKE) $(JOBS) --no-print-directory all $(BUILD)/tests/bench/make_input $(BUILD)/tests/bench/measure $(BUILD)/tests/bench/score
+	@sh tests/bench/front.sh $(BUILD) $(OLD)
+bench-front-readme:
+	@sh tests/bench/paste.sh $(BUILD)/bench/front.md bench-front tests/bench/RESULTS.md
+	@cp $(BUILD)/bench/front.png samples/pictures/front.png
 
 # Puts the last bench-frame's tables into tests/bench/RESULTS.md, between the marks.
 .PHONY: bench-frame-readme
