@@ -6,7 +6,9 @@ dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 die() { echo "FAILED: $*"; exit 1; }
 heavy='libEGL_|_dri|libLLVM|gallium|OpenImageIO|OpenColorIO|embree|ssdo-'
-nm -D "$SSDO" | grep -q __asan_init || heavy="$heavy|libstdc" # the address sanitizer itself needs it
+# The address sanitizer itself needs the C++ library, and from 3.4 on OpenEXR's core library, for HTJ2K.
+core=$(ldd "$SSDO" | sed -n 's/.*=> \(.*libOpenEXRCore[^ ]*\) .*/\1/p')
+nm -D "$SSDO" | grep -q __asan_init || readelf -d "$core" | grep -q 'NEEDED.*libstdc' || heavy="$heavy|libstdc"
 for option in --version --help; do
     LD_DEBUG=files "$SSDO" $option >"$dir/out" 2>"$dir/loaded" || die "$option"
     [ -s "$dir/out" ] || die "$option says nothing"
