@@ -20,7 +20,7 @@ import sys
 import tempfile
 
 import bpy
-from mathutils import Vector
+from mathutils import Matrix, Vector
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -45,6 +45,7 @@ SCENES = {
     "passage": (covered.passage, "sky_soft.exr", 0.5, False),
     "engine": (covered.engine, "sky_soft.exr", 0.5, True),
     "closeup": (covered.closeup, "sky_sun.exr", 0.2, False),
+    "drape": (covered.drape, "sky_soft.exr", 0.8, False),
     "hot": (parts.hot, "hot_env.exr", 1.0, False),
 }
 SAMPLES = ("still", "horizon", "thin", "box", "ortho")
@@ -82,6 +83,23 @@ def around(layer, path, ahead):
     render(path)
 
 
+def shot(name, layer, out, args):
+    """The camera moves by --step and turns by --pan from frame to frame: NAME.0001.exr ..., each with its ambient occlusion by one seed, and
+    NAME_truth.0001.exr ... by another."""
+    scene = bpy.context.scene
+    start = scene.camera.matrix_world.copy()
+    for frame in range(1, args.shot + 1):
+        move = Matrix.Translation((frame - 1) * Vector(args.step) + start.translation)
+        scene.camera.matrix_world = move @ Matrix.Rotation(math.radians((frame - 1) * args.pan), 4, "Z") @ start.to_3x3().to_4x4()
+        bpy.context.view_layer.update()
+        scene.cycles.seed = args.seed
+        passes(layer, {"z", "position", "normal", "ambient_occlusion"})
+        render(os.path.join(out, "%s.%04d.exr" % (name, frame)))
+        scene.cycles.seed = args.seed + 1000
+        passes(layer, {"ambient_occlusion"})
+        render(os.path.join(out, "%s_truth.%04d.exr" % (name, frame)))
+
+
 def make(name, args):
     builder, env, ao_distance, transparent = SCENES[name]
     env = args.sky or env
@@ -107,6 +125,9 @@ def make(name, args):
     if args.around:
         around(layer, os.path.join(args.out, name + "_around.exr"), 0.0)
         around(layer, os.path.join(args.out, name + "_ahead.exr"), 0.5)
+        return
+    if args.shot:
+        shot(name, layer, args.out, args)
         return
     main, truth = os.path.join(args.out, name + ".exr"), os.path.join(args.out, name + "_truth.exr")
     if not args.truth_only:
@@ -153,6 +174,9 @@ def main():
     parser.add_argument("--sky", choices=list(SKIES), help="light the scene by this sky instead of its own")
     parser.add_argument("--turn", type=float, default=0.0, help="turn the sky by this many degrees more, a multiple of 5.625")
     parser.add_argument("--around", action="store_true", help="render NAME_around.exr and NAME_ahead.exr, lat-long G-buffers from the camera and from ahead of it, and nothing else")
+    parser.add_argument("--shot", type=int, default=0, metavar="N", help="render N frames, NAME.0001.exr ..., in which the camera moves, and nothing else")
+    parser.add_argument("--pan", type=float, default=0.0, metavar="DEG", help="of --shot: how far it turns to the left from frame to frame")
+    parser.add_argument("--step", type=float, nargs=3, default=(0.0, 0.0, 0.0), metavar=("X", "Y", "Z"), help="of --shot: how far the camera moves from frame to frame")
     parser.add_argument("--truth-only", action="store_true")
     parser.add_argument("--export-obj", action="store_true", help="write the scene's mesh, NAME.obj and NAME.mtl, and render nothing")
     parser.add_argument("--export-proxies", action="store_true",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: CC0-1.0
-"""Scenes whose light comes from where the frame does not look: room, corner, atrium, passage; and engine and closeup, whose
-occlusion comes from what it does not show."""
+"""Scenes whose light comes from where the frame does not look: room, corner, atrium, passage; and engine, closeup and drape,
+whose occlusion comes from what it does not show."""
 import math
 
 from mathutils import Vector, noise
@@ -166,6 +166,20 @@ def passage(layout):
     lathe(smooth_profile(VASE), layout.matte(0.60, 0.36, 0.25), (0.6, layout.pick(5.2, 4.6, 5.6), 0.0), scale=0.5)
     camera((wide * layout.pick(0.45, 0.4, 0.55), -0.4, layout.pick(1.5, 1.4, 1.65)), (wide * 0.5, long, layout.pick(1.45, 1.3, 1.6)),
            layout.pick(27.0, 25.0, 30.0))
+
+
+def drape(layout):
+    """Pillars before a wall, a curtain beside the right one, at the border: for --shot with --pan, which takes the curtain out of the frame."""
+    stone, plaster = layout.matte(0.50, 0.46, 0.40), layout.matte(0.64, 0.58, 0.48)
+    span((-6.0, -4.0, -0.2), (6.0, 5.0, 0.0), layout.matte(0.42, 0.34, 0.27))
+    span((-6.0, 4.5, 0.0), (6.0, 4.7, 4.0), plaster)
+    side = layout.pick(0.5, 0.45, 0.55)
+    for x in (-2.2, -0.7, 0.85):
+        span((x - side / 2, 1.75, 0.0), (x + side / 2, 1.75 + side, 4.0), stone)
+    for y in (0.9, 2.4):
+        curtain(layout.matte(0.62, 0.14, 0.10), (1.28, y), (1.28, y + 0.8), 0.0, 3.2, layout, 5)
+    lathe(smooth_profile(VASE), layout.matte(0.60, 0.36, 0.25), (0.1, layout.pick(1.2, 1.0, 1.4), 0.0), scale=0.5)
+    camera((-0.6, -1.6, layout.pick(1.4, 1.3, 1.5)), (0.4, 4.5, 1.2), layout.pick(27.0, 26.0, 28.0))
 
 
 def engine(layout):

@@ -22,7 +22,9 @@ struct Params {
     int views;
     float sun_openness;
     int side;
+    int further;
 };
 Params params = Params(arc_block.radius, arc_block.thickness, arc_block.kappa, arc_block.thin, arc_block.slices, arc_block.steps, arc_block.seed,
                        arc_block.planes, arc_block.tolerance, arc_block.level, arc_block.strength, arc_block.suns, arc_block.exitant,
-                       arc_block.inverse_steps, arc_block.before, arc_block.views, arc_block.sun_openness, arc_block.side);
+                       arc_block.inverse_steps, arc_block.before, arc_block.views, arc_block.sun_openness, arc_block.side,
+                       arc_block.further);

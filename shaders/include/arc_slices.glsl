@@ -1,5 +1,10 @@
 // The slices around a receiver's view vector: each is marched on both sides, and what it meets there blocks its sectors.
-// RUNS (arc), HORIZON (gtao) or BITMASK (bitmask) says what blocks a sector; PLANES adds planes to RUNS.
+// RUNS (arc), HORIZON (gtao) or BITMASK (bitmask) says what blocks a sector; PLANES adds planes to RUNS. EVIDENCE tells
+// what is known from what is guessed, and FURTHER asks further G-buffers about the latter.
+
+#if defined(FURTHER) && !defined(EVIDENCE)
+#define EVIDENCE
+#endif
 
 #include "include/arc_params.glsl"
 #include "include/arc_receiver.glsl"
@@ -20,6 +25,9 @@
 #ifdef PLANES
 #include "include/arc_planes.glsl"
 #endif
+#ifdef FURTHER
+#include "include/further.glsl"
+#endif
 
 // What all slices of a receiver share.
 struct Centre {
@@ -30,6 +38,9 @@ struct Centre {
     float tangent;   // ball_tangent
 #ifdef PLANES
     uint planes;     // planes_around
+#endif
+#ifdef FURTHER
+    uint views;      // views_around
 #endif
     vec3 turn;       // the pixel's noise: for the angle of the slices, the places of the steps and of the sectors
 };
@@ -45,6 +56,9 @@ Centre centre_of(Receiver here, ivec2 p) {
     c.tangent = ball_tangent(c.P);
 #ifdef PLANES
     c.planes = planes_around(c.P, c.N);
+#endif
+#ifdef FURTHER
+    c.views = views_around(c.P);
 #endif
     c.turn = pixel_noise(p, params.seed);
     return c;
@@ -86,6 +100,9 @@ Slice march_slice(Centre c, int i) {
     }
 #ifdef PLANES
     block_by_planes(s.sectors, s.side, c.V, s.across, s.n, s.lines, c.P, c.planes, s.noise.x, s.noise.y);
+#endif
+#ifdef FURTHER
+    decide_by_views(s.sectors, s.side, c.V, s.across, s.n, c.P, c.views, s.noise.x, s.noise.y);
 #endif
     return s;
 }

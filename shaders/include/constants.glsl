@@ -7,6 +7,7 @@
 #define PARAMS_BINDING 1
 
 #define MAX_SUNS 4
+#define MAX_FURTHER 24 // further perspective G-buffers
 #define GRID_COUNT 6
 
 // Bounds of rays and hits (src/plugin/trace_abi.h).

@@ -16,7 +16,8 @@ PARAMS(arc_params) {
     int views;           // maps of the surround
     float sun_openness;  // share of unseen directions outside the frame that are open to suns; below 0: as of others
     int side;            // of the block of pixels that one of a smaller frame stands for (RECEIVERS)
-    int unused_1, unused_2;
+    int further;         // further views
+    int unused;
     vec4 openness[OPENNESS_VECTORS]; // of others, by direction (outside.glsl)
     vec4 walls_low, walls_high; // of its box, upright axes, the eye at the origin
     vec4 upright_from_camera[3]; // rows
@@ -25,4 +26,7 @@ PARAMS(arc_params) {
     vec4 box_low, box_high; // of all surfaces, map axes, the eye at the origin
     vec4 hidden[9];         // radiance coefficients of what lights hidden faces (src/passes/hidden.h)
     vec4 rest[9];           // radiance coefficients of the map without its suns
+    vec4 further_rows[3 * MAX_FURTHER]; // from this camera space to the view's
+    vec4 further_lens[MAX_FURTHER];     // fx fy cx cy
+    vec4 further_size[MAX_FURTHER];     // width, height, first column and row of its picture
 } END_PARAMS(arc_params)

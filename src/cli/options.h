@@ -23,6 +23,7 @@ typedef enum progress_form {
 typedef enum compose_mode { MODE_RADIANCE, MODE_VISIBILITY } compose_mode;
 typedef enum environment_frame { FRAME_WORLD, FRAME_CAMERA } environment_frame; // what the environment is fixed to
 typedef enum multiply_onto { MULTIPLY_DIFFUSE, MULTIPLY_ALL } multiply_onto;
+typedef enum surround_source { SURROUND_NONE, SURROUND_SHOT } surround_source; // of further G-buffers, beside --also
 typedef enum preset { PRESET_NONE, PRESET_SCENE, PRESET_CLOSEUP } preset;
 typedef enum output_compression {
     COMPRESS_AS_INPUT,
@@ -94,7 +95,8 @@ typedef struct options {
     int vpl_count;
     const char *beauty_env; // that lit the beauty
     double beauty_env_rotate, beauty_env_scale;
-    path_list also;      // further G-buffers
+    path_list also; // further G-buffers
+    surround_source surround;
     const char *proxies; // spheres the camera does not see; may be a pattern
 
     const char *env;

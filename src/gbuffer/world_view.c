@@ -229,6 +229,26 @@ static void take_latlong(const latlong_picture *l, int stride, world_view *v)
         }
 }
 
+// One pixel in a block of stride x stride, whose place it takes.
+static bool take_surface(const gbuffer *gb, int stride, world_view *v, error *e)
+{
+    const int first = stride / 2;
+    v->width = (gb->width - first + stride - 1) / stride, v->height = (gb->height - first + stride - 1) / stride;
+    v->camera = gb->camera;
+    v->camera.fx /= stride, v->camera.fy /= stride;
+    v->camera.cx = (gb->camera.cx - first - 0.5) / stride + 0.5, v->camera.cy = (gb->camera.cy - first - 0.5) / stride + 0.5;
+    v->surface = mem_pixels((size_t)v->width * (size_t)v->height, 4 * sizeof *v->surface, e);
+    float *to = v->surface;
+    for (int y = first; to && y < gb->height; y += stride)
+        for (int x = first; x < gb->width; x += stride, to += 4) {
+            size_t i = (size_t)y * (size_t)gb->width + (size_t)x;
+            bool there = gb->depth[i] > 0.0f;
+            to[0] = there ? gb->depth[i] : shows_nothing(gbuffer_pixel_empty, gb, x, y) ? -1.0f : 0.0f;
+            for (int k = 0; k < 3; k++) to[1 + k] = there ? gb->normal[4 * i + (size_t)k] : 0.0f;
+        }
+    return v->surface != NULL;
+}
+
 static void take_frame(const gbuffer *gb, int stride, world_view *v)
 {
     const camera *c = &gb->camera;
@@ -277,7 +297,7 @@ bool world_view_read(const exrio_file *file, const resolution *r, const gbuffer_
         goto out;
     }
     take_frame(&gb, stride, out);
-    ok = true;
+    ok = take_surface(&gb, stride, out, e);
 out:
     if (!ok) world_view_free(out);
     gbuffer_free(&gb);
@@ -289,5 +309,6 @@ void world_view_free(world_view *v)
 {
     free(v->points);
     free(v->empty);
+    free(v->surface);
     *v = (world_view){0};
 }

@@ -13,6 +13,11 @@ typedef struct world_view {
     size_t point_count;
     float *empty; // unit world directions in which the eye sees no surface; owned
     size_t empty_count;
+    // Of a perspective picture, else NULL: depth (0 nothing known, -1 no surface) and normal in its own camera space, width x
+    // height x 4; owned. `camera` is that of these pixels, its world known.
+    float *surface;
+    int width, height;
+    camera camera;
 } world_view;
 
 // From a file whose channels are loaded and resolved: position, and depth or normal where there are any. At most `most` pixels

@@ -47,7 +47,7 @@ static bool march(work *w, const char *what, int round, error *e)
     int before = round == 0 ? 0 : arc_round_slices(round - 1);
     arc_params params = arc_params_of_grid(c, arc_round_slices(round) - before, arc_round_steps(round));
     params.before = before;
-    variant v = arc_variant(c, what);
+    variant v = arc_occlusion_variant(c, what);
     variant_add(&v, true, "HALF_DIFFERENCE");
     variant_add(&v, true, "ROUND");
     const pass_call call = {
@@ -56,7 +56,9 @@ static bool march(work *w, const char *what, int round, error *e)
         .untimed = true,
         .tiles = go_to(w, w->active),
         PASS_PARAMS(params),
-        .reads = {{"surface_image", &c->image[IMAGE_SURFACE]}, {"planes_image", &c->image[IMAGE_PLANES]}},
+        .reads = {{"surface_image", &c->image[IMAGE_SURFACE]},
+                  {"planes_image", &c->image[IMAGE_PLANES]},
+                  {"further_image", c->further}},
         .writes = {{"occlusion_image", &c->image[IMAGE_OCCLUSION]},
                    {"half_difference_image", &c->image[IMAGE_HALF_DIFFERENCE]},
                    {"sums_image", &w->sums}},

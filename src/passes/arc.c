@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "passes/further.h"
 #include "passes/method.h"
 #include "passes/openings.h"
 #include "passes/surround.h"
@@ -64,6 +65,7 @@ arc_params arc_params_of_grid(const pass_context *c, int slices, int steps)
     arc_put(p.walls_high, v3_sub(s->outside.high, s->upright_eye), 0);
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) p.upright_from_camera[i][k] = (float)s->upright_from_camera.m[i][k];
+    further_put(c, &p);
     if (s->thickness_fixed) p.thin = p.thickness;
     arc_set_grid(&p, slices, steps);
     p.tolerance =
@@ -164,6 +166,13 @@ static bool make_rim(pass_context *c, error *e)
 
 // ---- the passes
 
+variant arc_occlusion_variant(const pass_context *c, const char *blocked)
+{
+    variant v = arc_variant(c, blocked);
+    variant_add(&v, strcmp(blocked, "RUNS") == 0 && further_serves(c), "FURTHER");
+    return v;
+}
+
 variant arc_variant(const pass_context *c, const char *what)
 {
     variant v = {{0}};
@@ -187,23 +196,24 @@ static bool make_surface(pass_context *c, error *e)
     return pass_make_image(c, IMAGE_SURFACE, e) && pass_run(c, &call, e);
 }
 
-bool arc_make_inputs(pass_context *c, error *e)
-{
-    return make_planes(c, e) && make_surface(c, e) && make_rim(c, e) && make_surround(c, e);
-}
+bool arc_make_inputs(pass_context *c, error *e) { return make_planes(c, e) && make_surface(c, e) && further_make(c, e); }
+
+bool arc_make_outside(pass_context *c, error *e) { return make_rim(c, e) && make_surround(c, e); }
 
 // Bent normals after the rounds: as many slices as each tile came to. The occlusion that this march makes is not used.
 static bool run_bent(pass_context *c, const char *what, error *e)
 {
     const arc_params params = arc_params_of_grid(c, ROUND_SLICES, ROUND_STEPS);
-    variant v = arc_variant(c, what);
+    variant v = arc_occlusion_variant(c, what);
     gpu_image unused = {0};
     variant_add(&v, true, "BENT");
     const pass_call call = {
         .program = "arc_occlusion",
         .label = "arc bent",
         .variant = v.words,
-        .reads = {{"surface_image", &c->image[IMAGE_SURFACE]}, {"planes_image", &c->image[IMAGE_PLANES]}},
+        .reads = {{"surface_image", &c->image[IMAGE_SURFACE]},
+                  {"planes_image", &c->image[IMAGE_PLANES]},
+                  {"further_image", c->further}},
         .writes = {{"occlusion_image", &unused}, {"bent_image", &c->image[IMAGE_BENT]}},
     };
     bool ok =
@@ -217,7 +227,7 @@ bool arc_run_occlusion(pass_context *c, const char *what, error *e)
     if (c->set.target_error > 0.0) return arc_run_adaptive(c, what, e) && (!c->want_bent || run_bent(c, what, e));
     const arc_params params = arc_params_of(c);
     bool half_difference = arc_has_half_difference(&c->set);
-    variant v = arc_variant(c, what);
+    variant v = arc_occlusion_variant(c, what);
     variant_add(&v, c->want_bent, "BENT");
     variant_add(&v, half_difference, "HALF_DIFFERENCE");
     if (!pass_make_image(c, IMAGE_OCCLUSION, e)) return false;
@@ -228,7 +238,9 @@ bool arc_run_occlusion(pass_context *c, const char *what, error *e)
         .label = "arc",
         .variant = v.words,
         PASS_PARAMS(params),
-        .reads = {{"surface_image", &c->image[IMAGE_SURFACE]}, {"planes_image", &c->image[IMAGE_PLANES]}},
+        .reads = {{"surface_image", &c->image[IMAGE_SURFACE]},
+                  {"planes_image", &c->image[IMAGE_PLANES]},
+                  {"further_image", c->further}},
         .writes = {{"occlusion_image", &c->image[IMAGE_OCCLUSION]},
                    {"bent_image", &c->image[IMAGE_BENT]},
                    {"half_difference_image", &c->image[IMAGE_HALF_DIFFERENCE]}},
@@ -301,7 +313,8 @@ bool arc_run_light(pass_context *c, const arc_light *what, error *e)
                                            : sky   ? IMAGE_FIRST_LIGHT
                                                    : IMAGE_RADIANCE],
                     *albedo = &seen->image[exitant ? IMAGE_BEAUTY : IMAGE_ALBEDO];
-    if (!arc_make_inputs(seen, e) || (sky && bounce && !exitant && !arc_first_light(c, e))) return false;
+    if (!arc_make_inputs(seen, e) || !arc_make_outside(seen, e) || (sky && bounce && !exitant && !arc_first_light(c, e)))
+        return false;
     if (bounce && !exitant && !find_hidden_light(seen, e)) return false;
     arc_params params = arc_unlimited_params_of(seen);
     int slices, steps;
@@ -382,7 +395,7 @@ static const variant_row variants[] = {
     {.program = "arc_bounce", .pattern = "[PLANES] [EXITANT] " ARC_FRAME},
     {.program = "arc_light",
      .pattern = "[PLANES] [VISIBILITY] " ARC_FRAME " | [PLANES] [VISIBILITY] BOUNCE [EXITANT] " ARC_FRAME},
-    {.program = "arc_occlusion", .pattern = ARC_OCCLUSION("RUNS [PLANES]")},
+    {.program = "arc_occlusion", .pattern = ARC_OCCLUSION("RUNS [PLANES] [FURTHER]")},
     {.program = "outside_light", .pattern = ""},
     {.program = "plane_light", .pattern = ""},
     {.program = "senders", .pattern = "[ALBEDO]"},

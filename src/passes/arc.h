@@ -14,11 +14,16 @@ arc_params arc_params_of(const pass_context *c);
 // For marches without a radius: light comes from any distance.
 arc_params arc_unlimited_params_of(const pass_context *c);
 
-// What all marches read, once a frame: the planes and their image, the packed surfaces.
+// What all marches read, once a frame: the planes and their image, the packed surfaces, further G-buffers.
 bool arc_make_inputs(pass_context *c, error *e);
+// What marches for light read beside it: the rims of openings, the surround.
+bool arc_make_outside(pass_context *c, error *e);
 
 // The words `what` and, if the frame has planes that may stand in, PLANES.
 variant arc_variant(const pass_context *c, const char *what);
+
+// The same for an occlusion that `blocked` names, and FURTHER if further G-buffers serve it.
+variant arc_occlusion_variant(const pass_context *c, const char *blocked);
 
 // What the march of an occlusion makes beside it, each wanted or not; `blocked` says what blocks its sectors.
 #define ARC_OCCLUSION(blocked) blocked " [BENT] [HALF_DIFFERENCE] | " blocked " HALF_DIFFERENCE ROUND"

@@ -77,7 +77,7 @@ WHOLE(upsample_params);
 WHOLE(vpl_params);
 #undef WHOLE
 
-enum { PARAMS_LARGEST = 1024 }; // bytes that a pass has room for
+enum { PARAMS_LARGEST = 4096 }; // bytes that a pass has room for
 _Static_assert(sizeof(arc_params) <= PARAMS_LARGEST && sizeof(s3ho_light_params) <= PARAMS_LARGEST &&
                    sizeof(trace_grid_params) <= PARAMS_LARGEST,
                "parameter blocks are larger than their buffer");

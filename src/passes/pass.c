@@ -101,6 +101,7 @@ pass_context pass_like(const pass_context *c, const gbuffer *gb, const pass_sett
         .environment = c->environment,
         .views = c->views,
         .view_count = c->view_count,
+        .further = c->further,
         .proxies = c->proxies,
         .sunless = c->sunless,
         .trace = c->trace,

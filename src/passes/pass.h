@@ -122,6 +122,7 @@ typedef struct pass_context {
     const float *relight_sh[SH_IMAGES]; // --from-sh: 4 a pixel as in sh, borrowed; NULL: s3ho measures
     const world_view *views;            // borrowed: what further G-buffers show
     int view_count;
+    gpu_image *further;        // borrowed, lives as long as the batch: further_make's
     const proxy_set *proxies;  // borrowed; NULL or empty: none
     pass_sunless *sunless;     // borrowed, lives as long as the batch
     struct trace_scene *trace; // the same; for raytrace

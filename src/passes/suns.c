@@ -94,7 +94,7 @@ static arc_params params_of(const pass_context *c)
 static bool find_shadows(pass_context *c, arc_params params, error *e)
 {
     if (c->image[IMAGE_SUNS].id) return true;
-    if (!arc_make_inputs(c, e)) return false;
+    if (!arc_make_inputs(c, e) || !arc_make_outside(c, e)) return false;
     put_box(c, m3_mul(c->env->map_from_world, c->set.world_from_camera), &params);
     variant v = {{0}};
     variant_add(&v, arc_closes_outside(c), "OUTSIDE");

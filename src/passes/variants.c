@@ -20,7 +20,7 @@ static const variant_row shared[] = {
                        "BEAUTY [DEPTHMASK] | BEAUTY ALBEDO INDIRECT [COVERAGE] [DEPTHMASK] | "
                        "BEAUTY ALBEDO SPLIT RADIANCE [DEPTHMASK] | BEAUTY ALBEDO SPLIT RADIANCE INDIRECT [COVERAGE] [DEPTHMASK]",
      true, true},
-    {"confidence", "", false, false},
+    {"confidence", "[FURTHER]", false, false},
     {"denoise", "ACROSS | [ERRORS]", true, false},
     {"downsample", "", true, false},
     {"depthmask", "ACROSS | DOWN", false, false},

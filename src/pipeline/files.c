@@ -14,6 +14,7 @@
 #include "cli/frames.h"
 #include "exr/file.h"
 #include "gbuffer/mesh.h"
+#include "pipeline/further_views.h"
 #include "pipeline/inputs.h"
 #include "plugin/colour.h"
 
@@ -53,6 +54,26 @@ static bool add_materials(const options *o, run_files *f, error *e)
     return true;
 }
 
+// The frames of the shot that serve all others.
+static bool add_shot(const options *o, run_files *f, error *e)
+{
+    char path[FILE_PATH];
+    if (o->surround != SURROUND_SHOT) return true;
+    if (!shot_frames(o, &f->shot, e)) return false;
+    for (int i = 0; i < f->shot.count; i++)
+        for (int k = 0; k < o->input_count; k++) {
+            if (!pattern_is(o->inputs[k])) continue;
+            if (!pattern_path(o->inputs[k], f->shot.frames[i], path, sizeof path)) continue; // reading the frame says so
+            char **grown = mem_grow(f->owned, (size_t)f->owned_count + 1, sizeof *grown, e);
+            if (!grown) return false;
+            f->owned = grown;
+            if (!(grown[f->owned_count] = strdup(path))) return err_set(e, ERR_MEMORY, NULL, NULL, "out of memory");
+            const char *mine = grown[f->owned_count++];
+            if (!add(f, (run_file){.what = "--surround shot", .path = mine, .decides = true, .once = true}, e)) return false;
+        }
+    return true;
+}
+
 bool run_files_list(const options *o, run_files *out, error *e)
 {
     bool framed = false, many = inputs_are_framed(o), converts = o->env_colorspace || o->albedo_colorspace;
@@ -82,7 +103,7 @@ bool run_files_list(const options *o, run_files *out, error *e)
     for (size_t i = 0; ok && i < sizeof others / sizeof *others; i++) ok = add(out, others[i], e);
     for (int i = 0; ok && i < o->also.count; i++)
         ok = add(out, (run_file){.what = "--also", .path = o->also.path[i], .decides = true, .once = true}, e);
-    ok = ok && add_materials(o, out, e);
+    ok = ok && add_materials(o, out, e) && add_shot(o, out, e);
     if (!ok) run_files_free(out);
     return ok;
 }
@@ -126,6 +147,7 @@ void run_files_free(run_files *files)
 {
     for (int i = 0; i < files->owned_count; i++) free(files->owned[i]);
     free(files->owned);
+    frames_free(&files->shot);
     free(files->list);
     *files = (run_files){0};
 }

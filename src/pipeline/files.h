@@ -6,6 +6,7 @@
 #include <stddef.h>
 
 #include "base/content.h"
+#include "cli/frames.h"
 #include "cli/options.h"
 
 enum { FILE_PATH = 4096 };
@@ -30,11 +31,12 @@ typedef struct run_files {
     int count;
     char **owned;
     int owned_count;
+    frame_list shot; // the frames that --surround shot chose, files of the list; owned
 } run_files;
 
-// ERR_INPUT where the system does not say what is there. Lists inputs, --also, environment, camera, proxies, mesh and its
-// material files, OpenColorIO config, output, preview and report. A mesh that cannot be read has no material files here; reading
-// it says why.
+// ERR_INPUT where the system does not say what is there. Lists inputs, --also, the frames of --surround shot, environment,
+// camera, proxies, mesh and its material files, OpenColorIO config, output, preview and report. A mesh that cannot be read has no
+// material files here; reading it says why.
 bool run_files_list(const options *o, run_files *out, error *e);
 void run_files_free(run_files *files);
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "pipeline/filter.h"
+#include "pipeline/further_views.h"
 #include "pipeline/output.h"
 #include "pipeline/outside_fit.h"
 #include "pipeline/read_back.h"
@@ -48,27 +49,12 @@ static bool prepare_light(job *j, frame_result *r, error *e)
     return prepare_beauty_light(j, r, &lit, e) && outside_fit(j, r, lit, o->beauty_env, &r->set.outside, e);
 }
 
-// What further G-buffers show, once for all frames.
-static bool load_views(job *j, const frame_result *r, error *e)
-{
-    enum { MOST_PIXELS = 1 << 19 };
-    const path_list *list = &j->o->also;
-    if (list->count == 0 || !r->plan.light || j->view_count == list->count || r->gb.valid == 0) return true;
-    if (!r->gb.camera.has_world || r->gb.camera.kind != CAMERA_PERSPECTIVE)
-        return err_set(e, ERR_INPUT, r->file->path, NULL,
-                       "--also is in world space, and this frame has no perspective camera that is known there; give it with "
-                       "--camera FILE");
-    for (; j->view_count < list->count; j->view_count++)
-        if (!read_world_view(j, list->path[j->view_count], MOST_PIXELS, &j->views[j->view_count], e)) return false;
-    return true;
-}
-
 // Of all views: what the first one's light tells of the outside holds for the others.
 static bool prepare_lights(job *j, frame_result *r, error *e)
 {
     for (frame_result *v = r; v; v = v->next_view) {
         if (v != r) v->plan.need_to_fit = 0, v->set.outside = r->set.outside;
-        if (!load_views(j, v, e) || !prepare_light(j, v, e)) return false;
+        if (!further_views_load(j, v, e) || !prepare_light(j, v, e)) return false;
     }
     return true;
 }

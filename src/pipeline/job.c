@@ -38,6 +38,8 @@ void job_forget_light(job *j)
     trace_scene_close(&j->trace);
     for (int i = 0; i < j->view_count; i++) world_view_free(&j->views[i]);
     j->view_count = 0;
+    j->views_loaded = false;
+    gpu_image_free(&j->further);
     j->trace = (trace_scene){0};
 }
 

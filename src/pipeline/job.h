@@ -32,12 +32,14 @@ typedef struct job {
     log_t *log;
     const run_files *files; // borrowed: all that is read and written. NULL where only a frame is asked for
     int threads;
-    gpu g;                            // opened when first needed
-    job_light light;                  // --env
-    job_light beauty_light;           // --beauty-env
-    trace_scene trace;                // --mesh
-    world_view views[OPT_MOST_PATHS]; // --also
+    gpu g;                         // opened when first needed
+    job_light light;               // --env
+    job_light beauty_light;        // --beauty-env
+    trace_scene trace;             // --mesh
+    world_view views[MAX_FURTHER]; // --also, --surround shot
     int view_count;
+    bool views_loaded;
+    gpu_image further;        // their pictures, as passes/further.h makes them
     const volatile int *stop; // borrowed, may be NULL: once it is not zero, frames are dropped unless they are being written
     progress *progress;       // borrowed, may be NULL
     bool no_floats;           // nobody looks at a frame's `layers`: they are not kept

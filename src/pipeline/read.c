@@ -78,18 +78,23 @@ static bool check_doubt(const job *j, const frame_result *r, error *e)
                    doubtful);
 }
 
+static gbuffer_options gbuffer_options_of(const job *j, unsigned need)
+{
+    return (gbuffer_options){.need = need,
+                             .camera_file = j->o->camera_file,
+                             .fov = j->o->fov,
+                             .ortho = j->o->ortho,
+                             .threads = j->threads,
+                             .normal_space = j->o->normal_space,
+                             .encoding_told = j->o->normal_encoding != NORMAL_AUTO,
+                             .normal_encoding = j->o->normal_encoding,
+                             .depth_near = j->o->depth_range[0],
+                             .depth_far = j->o->depth_range[1]};
+}
+
 static bool build_view(const job *j, frame_result *r, error *e)
 {
-    gbuffer_options g = {.need = r->plan.need | r->plan.need_to_fit,
-                         .camera_file = j->o->camera_file,
-                         .fov = j->o->fov,
-                         .ortho = j->o->ortho,
-                         .threads = j->threads,
-                         .normal_space = j->o->normal_space,
-                         .encoding_told = j->o->normal_encoding != NORMAL_AUTO,
-                         .normal_encoding = j->o->normal_encoding,
-                         .depth_near = j->o->depth_range[0],
-                         .depth_far = j->o->depth_range[1]};
+    const gbuffer_options g = gbuffer_options_of(j, r->plan.need | r->plan.need_to_fit);
     if (r->view) log_info(j->log, "view %s:", r->view);
     return gbuffer_build(r->file, &r->resolution, &g, &r->gb, j->log, e) && check_doubt(j, r, e) && convert_albedo(j, r, e) &&
            (!r->plan.from_sh || relight_load(j->o, r->file, r->view, &r->gb, r->relight_sh, e)) && outside_fit_gather(j, r, e);
@@ -200,17 +205,40 @@ bool read_and_open(job *j, const char *const *inputs, int count, frame_result *r
     return opened && d.ok;
 }
 
-bool read_world_view(const job *j, const char *path, size_t most, world_view *out, error *e)
+static bool load_world_view(const job *j, exrio_file *file, const resolve_options *ro, const gbuffer_options *g, size_t most,
+                            world_view *out, error *e)
 {
-    const gbuffer_options g = {.threads = j->threads};
     resolution r;
-    exrio_file *file = NULL;
-    bool ok = exrio_file_open(path, &file, e) && resolve_channels(file, &(resolve_options){0}, &r, j->log, e);
+    bool ok = resolve_channels(file, ro, &r, j->log, e);
     for (int i = 0; ok && i < ROLE_COUNT; i++)
         for (int k = 0; k < r.components[i]; k++)
             if ((i == ROLE_POSITION || i == ROLE_NORMAL || i == ROLE_DEPTH) && r.channels[i][k].part >= 0)
                 file->parts[r.channels[i][k].part].channels[r.channels[i][k].channel].wanted = true;
-    ok = ok && exrio_file_load(file, j->threads, e) && world_view_read(file, &r, &g, most, out, j->log, e);
+    return ok && exrio_file_load(file, j->threads, e) && world_view_read(file, &r, g, most, out, j->log, e);
+}
+
+bool read_world_view(const job *j, const char *path, size_t most, world_view *out, error *e)
+{
+    const gbuffer_options g = {.threads = j->threads};
+    exrio_file *file = NULL;
+    bool ok = exrio_file_open(path, &file, e) && load_world_view(j, file, &(resolve_options){0}, &g, most, out, e);
+    exrio_file_close(file);
+    return ok;
+}
+
+bool read_shot_view(const job *j, const char *const *paths, int count, size_t most, world_view *out, error *e)
+{
+    const gbuffer_options g = gbuffer_options_of(j, 0);
+    resolve_options ro = resolve_options_of(j->o);
+    const char *names[VIEWS_MAX];
+    char layer[128];
+    exrio_file *file = NULL;
+    bool ok = exrio_file_open_all(paths, count, &file, e);
+    if (ok) {
+        ro.view = views_of(file, j->o, names) > 0 ? names[0] : NULL;
+        ro.view_layer = view_layer_within(j->o, ro.view, layer, sizeof layer);
+        ok = load_world_view(j, file, &ro, &g, most, out, e);
+    }
     exrio_file_close(file);
     return ok;
 }

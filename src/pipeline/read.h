@@ -14,5 +14,7 @@ bool read_and_open(job *j, const char *const *inputs, int count, frame_result *r
 
 // What a further G-buffer shows of the world, of at most `most` of its pixels.
 bool read_world_view(const job *j, const char *path, size_t most, world_view *out, error *e);
+// The same of a frame of the shot, whose channels and camera are found as the inputs' are; of stereo the first view.
+bool read_shot_view(const job *j, const char *const *paths, int count, size_t most, world_view *out, error *e);
 
 #endif

@@ -1,9 +1,12 @@
 // A shot of the test still life, the camera sliding past it: what the noise of the layers does in motion, and on flat patches.
 //
-//     motion write WIDTH HEIGHT DIR       the frames' G-buffers, DIR/in.1.exr ...
-//     motion score WIDTH HEIGHT DIR NAME  of DIR/NAME.1.exr ..., a line for each layer: its name, change, residual
+//     motion write WIDTH HEIGHT DIR [curtain]       the frames' G-buffers, DIR/in.1.exr ...
+//     motion score WIDTH HEIGHT DIR NAME [curtain]  of DIR/NAME.1.exr ..., a line for each layer: its name, change, residual
 //     motion flat SAMPLES DIR             of DIR/NAME.exr of every rendered sample, for each layer: sample, layer, residual,
 //     beyond the truth's, windows
+//
+// With `curtain`: pillars before a wall and a curtain beside one of them, and the camera turns away until the curtain has left
+// the frame. Of the occlusion alone, for a radius of 0.8.
 //
 // Change: surface points are followed by their positions. The scene and its light stand still and the layers do not depend on the
 // view, so in truth nothing at a point changes. What changes from frame to frame is the noise, and what the view shows otherwise:
@@ -42,6 +45,24 @@ static void set_cameras(shot *s, int width, int height)
         double far = v3_length(v3_sub(s->scene.target, s->scene.eye)), pixel = far / v->camera.fx * width / 480.0;
         const double(*m)[3] = (const double(*)[3])v->camera.world_from_camera.m;
         v->camera.origin = v3_add(v->camera.origin, v3_scale(v3(m[0][0], m[1][0], m[2][0]), f * SLIDE * pixel));
+    }
+}
+
+static void set_curtain(shot *s, int width, int height)
+{
+    enum { FOLDS = 6 };
+    const vec3 grey = {0.5, 0.5, 0.5};
+    scene_add_plane(&s->scene, v3(0, 0, 0), v3(0, 0, 1), grey);
+    scene_add_plane(&s->scene, v3(0, 4.5, 0), v3(0, -1, 0), grey);
+    for (int i = 0; i < 3; i++) scene_add_box(&s->scene, v3(-2.2 + 1.525 * i, 2.0, 2.0), v3(0.25, 0.25, 2.0), 0.0, grey);
+    scene_add_sphere(&s->scene, v3(0.1, 1.2, 0.35), 0.35, grey);
+    for (int i = 0; i < FOLDS; i++)
+        scene_add_quad(&s->scene, v3(i % 2 ? 1.32 : 1.24, 0.9 + 0.8 / FOLDS * i, 0.0), v3(i % 2 ? -0.08 : 0.08, 0.8 / FOLDS, 0),
+                       v3(0, 0, 3.2), grey);
+    for (int f = 0; f < FRAMES; f++) {
+        double turn = (9.3 - 2.0 * f) * M_PI / 180.0; // to the right
+        s->view[f] = view_perspective(width, height, 67.4, 1.0);
+        view_look(&s->view[f], v3(-0.6, -1.6, 1.4), v3(-0.6 + 6.0 * sin(turn), -1.6 + 6.0 * cos(turn), 1.25), 0.0);
     }
 }
 
@@ -203,11 +224,11 @@ static bool score_layer(shot *s, int layer, const char *dir, const char *name, e
     return ok;
 }
 
-static bool score_shot(shot *s, const char *dir, const char *name, error *e)
+static bool score_shot(shot *s, const char *dir, const char *name, int count, error *e)
 {
     bool ok = true;
     for (int f = 0; ok && f < FRAMES; f++) ok = scene_picture(&s->scene, &s->view[f], &s->picture[f], e);
-    for (int layer = 0; ok && layer < LAYERS; layer++) ok = score_layer(s, layer, dir, name, e);
+    for (int layer = 0; ok && layer < count; layer++) ok = score_layer(s, layer, dir, name, e);
     for (int f = 0; f < FRAMES; f++) picture_free(&s->picture[f]);
     return ok;
 }
@@ -277,14 +298,16 @@ int main(int argc, char **argv)
     static shot s;
     error e = {0};
     char text[1024];
+    bool curtain = argc > 5 && strcmp(argv[argc - 1], "curtain") == 0;
+    argc -= curtain;
     bool writes = argc == 5 && strcmp(argv[1], "write") == 0, scores = argc == 6 && strcmp(argv[1], "score") == 0,
          flat = argc == 4 && strcmp(argv[1], "flat") == 0, ok;
     if (!writes && !scores && !flat) return 2;
     if (flat) {
         ok = flat_samples(argv[2], argv[3], &e);
     } else {
-        set_cameras(&s, atoi(argv[2]), atoi(argv[3]));
-        ok = writes ? write_shot(&s, argv[4], &e) : score_shot(&s, argv[4], argv[5], &e);
+        (curtain ? set_curtain : set_cameras)(&s, atoi(argv[2]), atoi(argv[3]));
+        ok = writes ? write_shot(&s, argv[4], &e) : score_shot(&s, argv[4], argv[5], curtain ? 1 : LAYERS, &e);
     }
     err_format(&e, text, sizeof text);
     if (!ok) fprintf(stderr, "motion: %s\n", text);

@@ -71,7 +71,7 @@ static void assert_record(char *line, const char *wanted)
 static const char *const everything =
     "--layers occlusion,bent --main composite --float --method alchemy --radius 0.1 --quality high --samples 100 --error "
     "0.015625 --thickness inf "
-    "--planes off --outside 0.25 --also a.exr --also b.exr "
+    "--planes off --outside 0.25 --also a.exr --also b.exr --surround shot "
     "--angle-bias 12.5 --sh-bands 3 --sh-sigma 0.25 --from-sh --resolution half --blur none --scale 1.7 "
     "--contrast 0.3333333333333333 --mesh scene.obj --mesh-axes y-up --proxies balls.json --bounce ssdo --bounce-strength 1e-15 "
     "--vpl-count 99 --env "
