@@ -1,4 +1,5 @@
-// Further perspective G-buffers, which the march of an occlusion asks where the frame shows nothing (shaders/include/further.glsl).
+// Further perspective G-buffers, which the march of an occlusion asks where the frame shows nothing
+// (shaders/include/further.glsl).
 #ifndef SSDO_PASSES_FURTHER_H
 #define SSDO_PASSES_FURTHER_H
 

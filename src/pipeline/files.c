@@ -14,7 +14,6 @@
 #include "cli/frames.h"
 #include "exr/file.h"
 #include "gbuffer/mesh.h"
-#include "pipeline/further_views.h"
 #include "pipeline/inputs.h"
 #include "plugin/colour.h"
 

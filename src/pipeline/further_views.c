@@ -6,23 +6,9 @@
 #include "pipeline/inputs.h"
 #include "pipeline/read.h"
 
-enum { MOST_PIXELS = 1 << 19 }; // of each
+_Static_assert(SHOT_VIEWS + OPT_MOST_PATHS <= MAX_FURTHER, "shaders/include/constants.glsl");
 
-bool shot_frames(const options *o, frame_list *out, error *e)
-{
-    frame_list all = {0};
-    *out = (frame_list){0};
-    if (!inputs_are_framed(o) || o->input_count == 0 || !pattern_is(o->inputs[0]))
-        return err_set(e, ERR_USAGE, o->input_count > 0 ? o->inputs[0] : NULL, NULL,
-                       "--surround shot takes frames of a sequence, and this input has no place for the frame: ####, %%04d or $F4");
-    if (!pattern_scan(o->inputs[0], &all, e)) return false;
-    out->count = all.count < SHOT_VIEWS ? all.count : SHOT_VIEWS;
-    out->frames = mem_zero(SHOT_VIEWS, sizeof *out->frames, e);
-    for (int i = 0; out->frames && i < out->count; i++)
-        out->frames[i] = all.frames[out->count < 2 ? 0 : (2 * i * (all.count - 1) + out->count - 1) / (2 * (out->count - 1))];
-    frames_free(&all);
-    return out->frames != NULL;
-}
+enum { MOST_PIXELS = 1 << 19 }; // of each
 
 static bool are_looked_at(const frame_result *r)
 {
@@ -32,9 +18,10 @@ static bool are_looked_at(const frame_result *r)
 static bool check_world(const job *j, const frame_result *r, error *e)
 {
     if (r->gb.camera.has_world && r->gb.camera.kind == CAMERA_PERSPECTIVE) return true;
-    return err_set(e, ERR_INPUT, r->file->path, NULL,
-                   "%s needs world space, and this frame has no perspective camera that is known there; give it with --camera FILE",
-                   j->o->also.count > 0 ? "--also" : "--surround shot");
+    return err_set(
+        e, ERR_INPUT, r->file->path, NULL,
+        "%s is in world space, and this frame has no perspective camera that is known there; give it with --camera FILE",
+        j->o->also.count > 0 ? "--also" : "--surround shot");
 }
 
 static bool load_frame(job *j, int frame, error *e)

@@ -53,5 +53,5 @@ grep -q 'warning: --surround shot does without frame 14' log || die "no word of 
 [ $? = 2 ] && grep -q -- '--surround shot takes frames of a sequence' log || die "a single frame"
 oiiotool in.3.exr --ch Z,N.X,N.Y,N.Z -o flat.1.exr && cp flat.1.exr flat.2.exr
 "$SSDO" -q flat.#.exr -o one.#.exr $look --fov 60 --surround shot >log 2>&1
-[ $? != 0 ] && grep -q -- '--surround shot needs world space' log || die "a shot without positions"
+[ $? != 0 ] && grep -q -- '--surround shot is in world space' log || die "a shot without positions"
 exit 0
