@@ -13,7 +13,7 @@ awk -F ' *[|] *' '
     function hold(what, value, limit) { if (!(value <= limit)) { print "FAILED: " $3 " " $4 ": " what " " value " > " limit; bad = 1 } }
     NR > 2 {
         draft = $3 == "draft"
-        most = $4 == "occlusion" ? (draft ? .02 : .012) : $4 == "radiance" ? (draft ? .042 : .025) : (draft ? .080 : .050)
+        most = $4 == "occlusion" ? (draft ? .02 : .012) : $4 == "radiance" ? (draft ? .042 : .025) : (draft ? .066 : .033)
         hold("motion", $5, most)
         hold("residual", $6, ($4 == "indirect" ? 5 : 1) * (draft ? 3 : 1))
         rows++
