@@ -158,7 +158,7 @@ static void take_counts(frame_result *r, const pass_context *c)
 }
 
 bool filter_estimate(job *j, const gbuffer *gb, job_light *light, const plan *p, const pass_settings *set,
-                     const plane_set *planes, float *radiance, float *indirect, error *e)
+                     const plane_set *planes, bool views, float *radiance, float *indirect, error *e)
 {
     pass_context c = {.g = &j->g,
                       .log = NULL,
@@ -169,7 +169,7 @@ bool filter_estimate(job *j, const gbuffer *gb, job_light *light, const plan *p,
                       .env = &light->env,
                       .environment = light->image,
                       .views = j->views,
-                      .view_count = j->view_count,
+                      .view_count = views ? j->view_count : 0,
                       .further = &j->further,
                       .sunless = &light->sunless,
                       .planes = *planes,

@@ -86,7 +86,7 @@ typedef struct model {
     float *column[CLOSED + 1]; // 3 a pixel
 } model;
 
-static bool estimate(const model *m, const openness *o, float *radiance, float *indirect, error *e)
+static bool estimate(const model *m, const openness *o, bool views, float *radiance, float *indirect, error *e)
 {
     pass_settings set = m->set;
     plan p = m->plan;
@@ -94,7 +94,7 @@ static bool estimate(const model *m, const openness *o, float *radiance, float *
     set.outside.low = m->walls.low, set.outside.high = m->walls.high;
     p.bounce = indirect != NULL;
     p.layers |= indirect ? 1u << LAYER_INDIRECT : 0u;
-    return filter_estimate(m->j, &m->r->lit, m->light, &p, &set, &m->r->planes, radiance, indirect, e);
+    return filter_estimate(m->j, &m->r->lit, m->light, &p, &set, &m->r->planes, views, radiance, indirect, e);
 }
 
 // The box about what is seen, but for the outermost 2 % on each side.
@@ -128,7 +128,7 @@ static bool estimate_columns(model *m, error *e)
         o.suns = k == SUNS ? 1.0 : 0.0;
         if (k < OPENNESS_COUNT) o.share[k] = 1.0;
         if (!(m->column[k] = mem_zero(3 * m->pixels, sizeof(float), e))) return false;
-        if (k != BOUNCE && !estimate(m, &o, m->column[k], NULL, e)) return false;
+        if (k != BOUNCE && !estimate(m, &o, true, m->column[k], NULL, e)) return false;
     }
     for (int k = 0; k < BOUNCE; k++)
         for (size_t i = 0; i < 3 * m->pixels; i++) m->column[k][i] -= m->column[CLOSED][i];
@@ -223,7 +223,7 @@ static bool fit_with_bounce(model *m, const double prior[UNKNOWNS], shares *s, e
     bool ok = radiance;
     for (int round = 0; ok && round < ROUNDS; round++) {
         const openness o = openness_of(m, s->x);
-        ok = estimate(m, &o, radiance, m->column[BOUNCE], e);
+        ok = estimate(m, &o, true, radiance, m->column[BOUNCE], e);
         if (ok) fit(m, prior, s);
     }
     free(radiance);
@@ -245,14 +245,15 @@ static const double TOO_BRIGHT = 2.0;
 // Whether the frame shows where it ends: some background, beyond a crack or two.
 static bool shows_background(const gbuffer *g) { return (double)g->valid < 0.999 * (double)g->width * (double)g->height; }
 
-// The picture's light over that with all open.
+// The picture's light over that with all open, whatever further G-buffers show: where they close what is open, a picture is not
+// too bright for its sky.
 static bool compare_light(const model *m, double *share, error *e)
 {
     const openness open = openness_even(1.0);
     const gbuffer *lit = &m->r->lit;
     double seen = 0.0, all = 0.0;
     float *light = mem_pixels(3 * m->pixels, sizeof *light, e);
-    bool ok = light && estimate(m, &open, light, NULL, e);
+    bool ok = light && estimate(m, &open, false, light, NULL, e);
     for (size_t i = 0; ok && i < 3 * m->pixels; i++) {
         double weight = (double)lit->beauty[i / 3 * 4 + 3];
         if (!(lit->depth[i / 3] > 0.0f)) continue;
