@@ -104,9 +104,9 @@ void visit(inout Sectors sectors, inout Run run, Side s, Walk k, vec3 P, float a
 #ifdef BOUNCE
     float facing = dot(n, to) * inversesqrt(max(dot(to, to), 1e-30));
     vec3 light = sent_by(stored_texel.zw, facing < 0.0);
-    // What joins two samples is seen on the one that faces the receiver more: the other may be its own ground, edge-on, far behind. But
-    // where the planes of the two do not cross between them (each sample before the other's plane, or each behind), the nearer surface
-    // stands free before the farther one, and a march that steps onto it meets its hidden side.
+    // What joins two samples is seen on the one that faces the receiver more: the other may be its own ground, edge-on, far behind.
+    // If each sample lies before the other's plane, or each behind it, the planes cross between them: an edge or a crease. If one lies
+    // before and one behind, the nearer surface stands free, and a march that steps onto it meets its hidden side.
     bool stands_free = before_plane.x * before_plane.y < 0.0 && max(off.x, off.y) > most_off;
     vec3 between = stands_free && nearer ? sent_by(stored_texel.zw, false) : abs(facing) >= run.facing ? light : run.light;
 #endif

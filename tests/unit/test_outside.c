@@ -171,24 +171,6 @@ static void light_comes_through_the_window(void **state)
     assert_true(part.ratio > closed.ratio && part.ratio < open.ratio);
 }
 
-enum { AROUND_W = 256, AROUND_H = 128 };
-
-// The positions of a lat-long picture of the scene; 0 where it sees nothing.
-static float *around(const scene *s, const latlong_camera *c)
-{
-    error e = {0};
-    tracer t = scene_tracer(s);
-    float *p = mem_zero((size_t)3 * AROUND_W * AROUND_H, sizeof *p, &e);
-    assert_non_null(p);
-    for (int i = 0; i < AROUND_W * AROUND_H; i++) {
-        hit h;
-        vec3 d = latlong_direction(c, AROUND_W, AROUND_H, i % AROUND_W + 0.5, i / AROUND_W + 0.5);
-        if (!t.closest(t.data, c->eye, d, 1e-6, 1e9, &h)) continue;
-        p[3 * i] = (float)h.position.x, p[3 * i + 1] = (float)h.position.y, p[3 * i + 2] = (float)h.position.z;
-    }
-    return p;
-}
-
 static void latlong_cameras_are_found(void **state)
 {
     (void)state;
@@ -214,19 +196,7 @@ static void another_view_shows_the_window(void **state)
     scene s = room(true, true);
     s.eye = v3(2, 4.6, 1.4), s.target = v3(1.8, 0, 1.1);
     latlong_camera c = {.eye = v3(1.2, 2.2, 1.3), .up = 2, .start = 1.0, .sense = -1};
-    float *p = around(&s, &c);
-    world_view v = {.eye = c.eye, .latlong = true, .pixel = M_PI / AROUND_H, .points = p};
-    v.empty = calloc((size_t)3 * AROUND_W * AROUND_H, sizeof *v.empty);
-    assert_non_null(v.empty);
-    for (int i = 0; i < AROUND_W * AROUND_H; i++) {
-        if (p[3 * i] == 0.0f && p[3 * i + 1] == 0.0f && p[3 * i + 2] == 0.0f) {
-            vec3 d = latlong_direction(&c, AROUND_W, AROUND_H, i % AROUND_W + 0.5, i / AROUND_W + 0.5);
-            float *to = v.empty + 3 * v.empty_count++;
-            to[0] = (float)d.x, to[1] = (float)d.y, to[2] = (float)d.z;
-        } else {
-            memmove(p + 3 * v.point_count++, p + 3 * i, 3 * sizeof *p);
-        }
-    }
+    world_view v = view_around(&s, &c);
     light without = light_of(&s, 0.0, NULL), with = light_of(&s, 0.0, &v);
     printf("figure: room with its window behind the eye: radiance %.3f of the truth's rms without and %.3f (means %.2f) with "
            "another "

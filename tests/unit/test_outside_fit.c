@@ -140,6 +140,29 @@ static void light_tells_where_it_is_open(void **state)
     rig_close(&r);
 }
 
+// A further G-buffer shows a curtain before most of the window, which lets the light through. It makes the room too dark for its
+// own picture, but not the picture too bright for its sky.
+static void a_curtain_refuses_no_fit(void **state)
+{
+    (void)state;
+    static rig r;
+    error e = {0};
+    gbuffer gb;
+    openness o;
+    scene s = room_from_its_window(), curtained = s;
+    quad(&curtained, 1, 4.99, 1, v3(1.4, 0, 0), v3(0, 0, 1));
+    latlong_camera c = {.eye = v3(1.2, 2.2, 1.3), .up = 2, .start = 1.0, .sense = -1};
+    must(rig_open(&r, NULL, &e), &e);
+    look(&s, W, H, 60.0, &gb);
+    light_by(&r, 0.5, 0.6);
+    float *truth = truth_of(&s, &gb, &r.job.light.env);
+    r.job.views[r.job.view_count++] = view_around(&curtained, &c);
+    assert_true(fit_to(&r, &gb, truth, true, OUTSIDE_COVERED, &o));
+    free(truth);
+    gbuffer_free(&gb);
+    rig_close(&r);
+}
+
 // Without a word on what lit it, a picture that is as bright as under an open sky stays open, one that is a tenth as bright and
 // shows no background is closed.
 static void the_unasked_decision(void **state)
@@ -205,6 +228,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(light_tells_where_it_is_open),
+        cmocka_unit_test(a_curtain_refuses_no_fit),
         cmocka_unit_test(the_unasked_decision),
         cmocka_unit_test(lamps_explain_nothing),
     };
