@@ -44,8 +44,6 @@ void arc_set_grid(arc_params *p, int slices, int steps)
     p->inverse_steps = 1.0f / (float)steps;
 }
 
-void arc_put(float to[4], vec3 a, double w) { to[0] = (float)a.x, to[1] = (float)a.y, to[2] = (float)a.z, to[3] = (float)w; }
-
 arc_params arc_params_of_grid(const pass_context *c, int slices, int steps)
 {
     const pass_settings *s = &c->set;
@@ -61,8 +59,8 @@ arc_params arc_params_of_grid(const pass_context *c, int slices, int steps)
         .views = c->view_count,
     };
     for (int i = 0; i < OPENNESS_COUNT; i++) p.openness[i / 4][i % 4] = (float)s->outside.share[i];
-    arc_put(p.walls_low, v3_sub(s->outside.low, s->upright_eye), 0);
-    arc_put(p.walls_high, v3_sub(s->outside.high, s->upright_eye), 0);
+    params_put(p.walls_low, v3_sub(s->outside.low, s->upright_eye), 0);
+    params_put(p.walls_high, v3_sub(s->outside.high, s->upright_eye), 0);
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) p.upright_from_camera[i][k] = (float)s->upright_from_camera.m[i][k];
     further_put(c, &p);
@@ -109,11 +107,12 @@ static uint32_t believed_sectors(double belief)
 
 static void put_plane(float row[PLANE_COLUMNS][4], const plane *p, bool uneven)
 {
-    arc_put(row[PLANE_EQUATION], p->normal, p->offset);
-    for (int i = 0; i < 2; i++) arc_put(row[PLANE_U + i], v3_scale(p->axis[i], 1.0 / p->extent[i]), p->centre[i] / p->extent[i]);
-    arc_put(row[PLANE_LIGHT], v3(0, 0, 0), uneven ? -p->margin : p->margin);
+    params_put(row[PLANE_EQUATION], p->normal, p->offset);
+    for (int i = 0; i < 2; i++)
+        params_put(row[PLANE_U + i], v3_scale(p->axis[i], 1.0 / p->extent[i]), p->centre[i] / p->extent[i]);
+    params_put(row[PLANE_LIGHT], v3(0, 0, 0), uneven ? -p->margin : p->margin);
     uint32_t sectors = believed_sectors(p->belief);
-    arc_put(row[PLANE_BELIEF], v3(p->belief, sectors & 0xffff, sectors >> 16), 0);
+    params_put(row[PLANE_BELIEF], v3(p->belief, sectors & 0xffff, sectors >> 16), 0);
     for (int y = 0; y < PLANE_CELLS; y++) row[PLANE_MASK + y / 4][y % 4] = (float)p->cells[y];
 }
 

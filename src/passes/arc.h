@@ -63,6 +63,4 @@ bool arc_run_as_adaptive(pass_context *c, const pass_call *call, const arc_param
 bool arc_closes_outside(const pass_context *c);
 bool arc_has_surround(const pass_context *c);
 
-void arc_put(float to[4], vec3 a, double w);
-
 #endif

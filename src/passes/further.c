@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "passes/arc.h"
 
 // Pictures stand one below the other, in columns of at most this height.
 enum { COLUMN = 8192 };
@@ -84,12 +83,12 @@ static void put_view(const pass_context *c, const world_view *v, place at, arc_p
     const vec3 eye = m3_apply(to_view, v3_sub(c->gb->camera.origin, v->camera.origin));
     const int k = p->further++;
     for (int r = 0; r < 3; r++)
-        arc_put(p->further_rows[3 * k + r], v3(turn.m[r][0], turn.m[r][1], turn.m[r][2]),
-                r == 0   ? eye.x
-                : r == 1 ? eye.y
-                         : eye.z);
-    arc_put(p->further_lens[k], v3(v->camera.fx, v->camera.fy, v->camera.cx), v->camera.cy);
-    arc_put(p->further_size[k], v3(v->width, v->height, at.x), at.y);
+        params_put(p->further_rows[3 * k + r], v3(turn.m[r][0], turn.m[r][1], turn.m[r][2]),
+                   r == 0   ? eye.x
+                   : r == 1 ? eye.y
+                            : eye.z);
+    params_put(p->further_lens[k], v3(v->camera.fx, v->camera.fy, v->camera.cx), v->camera.cy);
+    params_put(p->further_size[k], v3(v->width, v->height, at.x), at.y);
 }
 
 void further_put(const pass_context *c, arc_params *p)

@@ -7,6 +7,8 @@
 
 #include <stddef.h>
 
+#include "base/vec.h"
+
 #include "../../shaders/include/constants.glsl"
 
 typedef float vec4[4];
@@ -81,5 +83,11 @@ enum { PARAMS_LARGEST = 4096 }; // bytes that a pass has room for
 _Static_assert(sizeof(arc_params) <= PARAMS_LARGEST && sizeof(s3ho_light_params) <= PARAMS_LARGEST &&
                    sizeof(trace_grid_params) <= PARAMS_LARGEST,
                "parameter blocks are larger than their buffer");
+
+// A vector of a block, or a texel, from three numbers and a fourth.
+static inline void params_put(float to[4], vec3 a, double w)
+{
+    to[0] = (float)a.x, to[1] = (float)a.y, to[2] = (float)a.z, to[3] = (float)w;
+}
 
 #endif

@@ -44,8 +44,8 @@ static void put_box(const pass_context *c, mat3 map_from_camera, arc_params *p)
         j.low[0] = v3(fmin(j.low[0].x, j.low[i].x), fmin(j.low[0].y, j.low[i].y), fmin(j.low[0].z, j.low[i].z));
         j.high[0] = v3(fmax(j.high[0].x, j.high[i].x), fmax(j.high[0].y, j.high[i].y), fmax(j.high[0].z, j.high[i].z));
     }
-    arc_put(p->box_low, j.low[0], 0);
-    arc_put(p->box_high, j.high[0], 0);
+    params_put(p->box_low, j.low[0], 0);
+    params_put(p->box_high, j.high[0], 0);
 }
 
 static void put_suns(const pass_context *c, arc_params *p)
@@ -56,8 +56,8 @@ static void put_suns(const pass_context *c, arc_params *p)
     for (int i = 0; i < set->count; i++) {
         const sun *s = &set->suns[i];
         double half_width = acos(fmax(-1.0, 1.0 - s->solid_angle / (2.0 * M_PI))); // of a cap of that solid angle
-        arc_put(p->sun_direction[i], m3_apply(m3_transpose(map_from_camera), s->direction), half_width);
-        arc_put(p->sun_light[i], v3_scale(v3(s->flux[0], s->flux[1], s->flux[2]), 1.0 / M_PI), 0);
+        params_put(p->sun_direction[i], m3_apply(m3_transpose(map_from_camera), s->direction), half_width);
+        params_put(p->sun_light[i], v3_scale(v3(s->flux[0], s->flux[1], s->flux[2]), 1.0 / M_PI), 0);
     }
     for (int i = 0; i < 9; i++)
         for (int k = 0; k < 3; k++) p->rest[i][k] = (float)c->sunless->rest[i][k];
