@@ -8,15 +8,12 @@
 #include "base/mem.h"
 #include "base/sort.h"
 #include "pipeline/filter.h"
+#include "pipeline/outside_shares.h"
 #include "pipeline/settings.h"
 
 enum {
     MOST_PIXELS = 1 << 14, // of the small frame
     SAMPLES = 16,          // a pixel: that there are many pixels makes up for the noise
-    SUNS = OPENNESS_COUNT,
-    BOUNCE,
-    UNKNOWNS,
-    CLOSED = UNKNOWNS, // the column of what comes with all closed
 };
 
 // Where the albedo is darker, the quotient of beauty and albedo says more about the noise than about the light.
@@ -83,7 +80,7 @@ typedef struct model {
     pass_settings set;
     openness walls;
     size_t pixels;
-    float *column[CLOSED + 1]; // 3 a pixel
+    float *column[SHARE_COLUMNS];
 } model;
 
 static bool estimate(const model *m, const openness *o, bool views, float *radiance, float *indirect, error *e)
@@ -123,108 +120,37 @@ static bool find_walls(const model *m, openness *o, error *e)
 // All but the bounce's, which depends on the shares.
 static bool estimate_columns(model *m, error *e)
 {
-    for (int k = 0; k <= CLOSED; k++) {
+    for (int k = 0; k < SHARE_COLUMNS; k++) {
         openness o = openness_even(0.0);
-        o.suns = k == SUNS ? 1.0 : 0.0;
+        o.suns = k == SHARE_SUNS ? 1.0 : 0.0;
         if (k < OPENNESS_COUNT) o.share[k] = 1.0;
         if (!(m->column[k] = mem_zero(3 * m->pixels, sizeof(float), e))) return false;
-        if (k != BOUNCE && !estimate(m, &o, true, m->column[k], NULL, e)) return false;
+        if (k != SHARE_BOUNCE && !estimate(m, &o, true, m->column[k], NULL, e)) return false;
     }
-    for (int k = 0; k < BOUNCE; k++)
-        for (size_t i = 0; i < 3 * m->pixels; i++) m->column[k][i] -= m->column[CLOSED][i];
+    for (int k = 0; k < SHARE_BOUNCE; k++)
+        for (size_t i = 0; i < 3 * m->pixels; i++) m->column[k][i] -= m->column[SHARE_CLOSED][i];
     return true;
 }
 
 // ---- the shares
 
-typedef struct shares {
-    double x[UNKNOWNS];
-    double unexplained; // root mean square of what is left of the light, over that of the light
-} shares;
-
-typedef struct normal_equations {
-    double a[UNKNOWNS][UNKNOWNS], b[UNKNOWNS];
-} normal_equations;
-
-// The bounds of a share are none and all. The bounce is a multiple of what one bounce sends: a renderer may make more than one,
-// and the frame shows only some of what sends.
-static double least(int k) { return k == BOUNCE ? 0.5 : 0.0; }
-static double most(int k) { return k == BOUNCE ? 3.0 : 1.0; }
-
-// Least squares within bounds: each unknown in turn, until nothing moves. The matrix is positive definite, so this converges.
-static void solve(const normal_equations *n, double x[UNKNOWNS])
+static openness openness_of(const model *m, const double x[SHARE_UNKNOWNS])
 {
-    for (int round = 0; round < 500; round++)
-        for (int i = 0; i < UNKNOWNS; i++) {
-            double sum = n->b[i];
-            for (int k = 0; k < UNKNOWNS; k++) sum -= k == i ? 0.0 : n->a[i][k] * x[k];
-            x[i] = fmin(most(i), fmax(least(i), sum / n->a[i][i]));
-        }
-}
-
-static double predicted(const model *m, const double x[UNKNOWNS], size_t i)
-{
-    double sum = (double)m->column[CLOSED][i];
-    for (int k = 0; k < UNKNOWNS; k++) sum += x[k] * (double)m->column[k][i];
-    return sum;
-}
-
-// Samples that are off by more than this many times the root mean square count by their distance, not by its square (Huber 1964).
-static const double OUTLIER = 3.0;
-// Weight of the prior: the light that it may cost, as a share of what the most important share explains.
-static const double STIFF = 0.001;
-
-static void add_sample(const model *m, normal_equations *n, size_t i, double y, double w)
-{
-    for (int k = 0; k < UNKNOWNS; k++) {
-        double wk = w * (double)m->column[k][i];
-        n->b[k] += wk * (y - (double)m->column[CLOSED][i]);
-        for (int l = 0; l < UNKNOWNS; l++) n->a[k][l] += wk * (double)m->column[l][i];
-    }
-}
-
-static void fit(const model *m, const double prior[UNKNOWNS], shares *s)
-{
-    enum { ROUNDS = 5 };
-    const gbuffer *lit = &m->r->lit;
-    double limit = INFINITY;
-    for (int round = 0; round <= ROUNDS; round++) {
-        normal_equations n = {0};
-        double squares = 0.0, all = 0.0, count = 0.0, strongest = 0.0;
-        for (size_t i = 0; i < 3 * m->pixels; i++) {
-            double weight = (double)lit->beauty[i / 3 * 4 + 3];
-            if (!(lit->depth[i / 3] > 0.0f) || weight <= 0.0) continue;
-            double y = (double)lit->beauty[i / 3 * 4 + i % 3] / weight, off = y - predicted(m, s->x, i);
-            squares += weight * off * off, all += weight * y * y, count += weight;
-            if (round < ROUNDS) add_sample(m, &n, i, y, weight * fmin(1.0, limit / fmax(fabs(off), 1e-30)));
-        }
-        s->unexplained = all > 0.0 ? sqrt(squares / all) : 1.0;
-        if (round == ROUNDS) break;
-        limit = OUTLIER * sqrt(squares / fmax(count, 1.0));
-        for (int k = 0; k < UNKNOWNS; k++) strongest = fmax(strongest, n.a[k][k]);
-        for (int k = 0; k < UNKNOWNS; k++)
-            n.a[k][k] += STIFF * strongest + 1e-30, n.b[k] += (STIFF * strongest + 1e-30) * prior[k];
-        solve(&n, s->x);
-    }
-}
-
-static openness openness_of(const model *m, const double x[UNKNOWNS])
-{
-    openness o = {.suns = x[SUNS], .low = m->walls.low, .high = m->walls.high};
+    openness o = {.suns = x[SHARE_SUNS], .low = m->walls.low, .high = m->walls.high};
     memcpy(o.share, x, sizeof o.share);
     return o;
 }
 
 // A beauty holds the light that bounces too. It depends on the shares, so each time round it is that of the last ones.
-static bool fit_with_bounce(model *m, const double prior[UNKNOWNS], shares *s, error *e)
+static bool fit_with_bounce(model *m, const double prior[SHARE_UNKNOWNS], shares *s, error *e)
 {
     enum { ROUNDS = 4 };
     float *radiance = mem_pixels(3 * m->pixels, sizeof *radiance, e);
     bool ok = radiance;
     for (int round = 0; ok && round < ROUNDS; round++) {
         const openness o = openness_of(m, s->x);
-        ok = estimate(m, &o, true, radiance, m->column[BOUNCE], e);
-        if (ok) fit(m, prior, s);
+        ok = estimate(m, &o, true, radiance, m->column[SHARE_BOUNCE], e);
+        if (ok) shares_fit(&m->r->lit, m->column, prior, s);
     }
     free(radiance);
     return ok;
@@ -269,14 +195,14 @@ static bool compare_light(const model *m, double *share, error *e)
 // if the prior is not less.
 static bool fit_shares(model *m, const openness *prior, double light, shares *s, error *e)
 {
-    double before[UNKNOWNS];
-    for (int k = 0; k < UNKNOWNS; k++) before[k] = fmin(openness_mean(prior), light);
-    before[BOUNCE] = 1.0;
+    double before[SHARE_UNKNOWNS];
+    for (int k = 0; k < SHARE_UNKNOWNS; k++) before[k] = fmin(openness_mean(prior), light);
+    before[SHARE_BOUNCE] = 1.0;
     memcpy(s->x, before, sizeof before);
     bool ok = estimate_columns(m, e);
-    if (ok && m->r->lit_direct) fit(m, before, s);
+    if (ok && m->r->lit_direct) shares_fit(&m->r->lit, m->column, before, s);
     if (ok && !m->r->lit_direct) ok = fit_with_bounce(m, before, s, e);
-    for (int k = 0; k <= CLOSED; k++) free(m->column[k]);
+    for (int k = 0; k < SHARE_COLUMNS; k++) free(m->column[k]);
     return ok;
 }
 
