@@ -2,14 +2,13 @@
 
 #include <math.h>
 
-enum { ROUNDS = 10 };
+enum {
+    ROUNDS = 10,
+    AREA = 8 // pixels on a side: what is left unexplained is measured over areas, where the noise of the picture averages out
+};
 
 // Samples that are off by more than this many times the root mean square count by their distance, not by its square (Huber 1964).
 static const double OUTLIER = 3.0;
-// The prior weighs as much as it is known: a share may be off it by DOUBT, root mean square. What the light leaves unexplained is
-// alike over areas, not noise of single pixels, so a picture counts as this many samples.
-static const double DOUBT = 0.5, AREAS = 256.0;
-
 typedef struct normal_equations {
     double a[SHARE_UNKNOWNS][SHARE_UNKNOWNS], b[SHARE_UNKNOWNS];
 } normal_equations;
@@ -45,16 +44,22 @@ static double predicted(const fit *f, size_t i)
 // What one round finds with the shares of the last one.
 typedef struct sums {
     normal_equations n;
-    double left, light, weight; // squares, times the weight; the weight
-    double suns, all_suns;      // squares of suns' light: where they are seen, and of all
+    double squares, weight;    // of single pixels: what is left, squared, times the weight; the weight
+    double left, light, areas; // of areas: squares of what is left and of the light, times the weight; how many there are
+    double suns, all_suns;     // squares of suns' light: where they are seen, and of all
 } sums;
 
-// One pixel: r g b of its light before suns, as it is and as predicted, and that of its suns.
-static void add_pixel(const fit *f, sums *t, size_t pixel, double limit)
+typedef struct area {
+    double left[3], light[3], weight; // times the weight
+} area;
+
+// One pixel: its light, what is left of it, and whether that is less with suns.
+static void add_pixel(const fit *f, sums *t, area *in, size_t pixel, double limit)
 {
     const float *beauty = f->lit->beauty + 4 * pixel;
     double weight = (double)beauty[3], light[3], off[3], dark = 0.0, bright = 0.0;
     if (!(f->lit->depth[pixel] > 0.0f) || weight <= 0.0) return;
+    in->weight += weight, t->weight += 3.0 * weight;
     for (size_t c = 0; c < 3; c++) {
         double suns = (double)f->column[SHARE_SUNS][3 * pixel + c];
         light[c] = (double)beauty[c] / weight;
@@ -63,10 +68,11 @@ static void add_pixel(const fit *f, sums *t, size_t pixel, double limit)
     }
     for (size_t c = 0; c < 3; c++) {
         size_t i = 3 * pixel + c;
-        double suns = (double)f->column[SHARE_SUNS][i], seen = bright < dark ? suns : 0.0;
+        double suns = (double)f->column[SHARE_SUNS][i], seen = bright < dark ? suns : 0.0, left = off[c] - seen;
         double rest = light[c] - seen - (double)f->column[SHARE_CLOSED][i];
-        double w = weight * fmin(1.0, limit / fmax(fabs(off[c] - seen), 1e-30));
-        t->left += weight * (off[c] - seen) * (off[c] - seen), t->light += weight * light[c] * light[c], t->weight += weight;
+        double w = weight * fmin(1.0, limit / fmax(fabs(left), 1e-30));
+        in->left[c] += weight * left, in->light[c] += weight * light[c];
+        t->squares += weight * left * left;
         t->suns += seen * suns, t->all_suns += suns * suns;
         for (int k = 0; k < SHARE_UNKNOWNS; k++) {
             double wk = w * (double)f->column[k][i];
@@ -76,20 +82,45 @@ static void add_pixel(const fit *f, sums *t, size_t pixel, double limit)
     }
 }
 
+static void add_area(const fit *f, sums *t, int left, int top, double limit)
+{
+    area in = {0};
+    for (int y = top; y < top + AREA && y < f->lit->height; y++)
+        for (int x = left; x < left + AREA && x < f->lit->width; x++)
+            add_pixel(f, t, &in, (size_t)y * (size_t)f->lit->width + (size_t)x, limit);
+    if (in.weight <= 0.0) return;
+    t->areas += 1.0;
+    for (int c = 0; c < 3; c++) {
+        t->left += in.left[c] * in.left[c] / in.weight;
+        t->light += in.light[c] * in.light[c] / in.weight;
+    }
+}
+
+// Each area counts as one sample of what is left. A share is the mean of what is open or closed, so that its mean square about
+// the prior is at most p (1 - p); the bounce's is a guess.
+static void add_prior(sums *t, const double prior[SHARE_UNKNOWNS])
+{
+    const double least_doubt = 0.01, bounce_doubt = 0.25;
+    for (int k = 0; k < SHARE_UNKNOWNS; k++) {
+        double doubt = k == SHARE_BOUNCE ? bounce_doubt : fmax(prior[k] * (1.0 - prior[k]), least_doubt);
+        double weight = t->left / (fmax(t->areas, 1.0) * doubt) + 1e-30;
+        t->n.a[k][k] += weight, t->n.b[k] += weight * prior[k];
+    }
+}
+
 void shares_fit(const gbuffer *lit, float *const column[SHARE_COLUMNS], const double prior[SHARE_UNKNOWNS], shares *s)
 {
     const fit f = {lit, column, s};
-    const size_t pixels = (size_t)lit->width * (size_t)lit->height;
     double limit = INFINITY;
     for (int round = 0; round <= ROUNDS; round++) {
         sums t = {0};
-        for (size_t i = 0; i < pixels; i++) add_pixel(&f, &t, i, limit);
+        for (int y = 0; y < lit->height; y += AREA)
+            for (int x = 0; x < lit->width; x += AREA) add_area(&f, &t, x, y, limit);
         s->unexplained = t.light > 0.0 ? sqrt(t.left / t.light) : 1.0;
         s->x[SHARE_SUNS] = t.all_suns > 0.0 ? t.suns / t.all_suns : prior[SHARE_SUNS];
         if (round == ROUNDS) break;
-        limit = OUTLIER * sqrt(t.left / fmax(t.weight, 1.0));
-        double prior_weight = t.left / (AREAS * DOUBT * DOUBT) + 1e-30;
-        for (int k = 0; k < SHARE_UNKNOWNS; k++) t.n.a[k][k] += prior_weight, t.n.b[k] += prior_weight * prior[k];
+        limit = OUTLIER * sqrt(t.squares / fmax(t.weight, 1.0));
+        add_prior(&t, prior);
         solve(&t.n, s->x);
     }
 }

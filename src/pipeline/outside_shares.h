@@ -15,7 +15,7 @@ enum {
 
 typedef struct shares {
     double x[SHARE_UNKNOWNS];
-    double unexplained; // root mean square of what is left of the light, over that of the light
+    double unexplained; // root mean square of what is left of the light, over that of the light; both over areas of 8 x 8 pixels
 } shares;
 
 // Least squares within bounds. lit: a small frame whose beauty holds the light to be explained, r g b times the weight in the

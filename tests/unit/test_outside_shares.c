@@ -105,11 +105,25 @@ static void the_prior(void **state)
     shares s = fit(&p);
     assert_true(fabs(s.x[4] - 0.1) < 1e-6);
     double told = s.x[8];
-    for (int i = 0; i < PIXELS; i++)
-        for (int c = 0; c < 3; c++) p.beauty[4 * i + c] *= i % 2 ? 1.8f : 0.2f;
+    for (int i = 0; i < 4 * PIXELS; i++)
+        if (i % 4 < 3) p.beauty[i] *= (i / 4 % W / 8 + i / 4 / W / 8) % 2 ? 1.8f : 0.2f;
     s = fit(&p);
     assert_true(s.unexplained > 0.5);
     assert_true(s.x[8] > 0.1 && s.x[8] < told - 0.02);
+}
+
+// Noise of single pixels, as of a picture of few samples, is no light that is left unexplained.
+static void noise_refuses_nothing(void **state)
+{
+    (void)state;
+    static picture p;
+    paint(&p);
+    light(&p, 0);
+    for (int i = 0; i < 4 * PIXELS; i++)
+        if (i % 4 < 3) p.beauty[i] *= (i / 4 + i / 4 / W) % 2 ? 1.9f : 0.1f;
+    shares s = fit(&p);
+    assert_true(s.unexplained < 0.2);
+    assert_true(worst(&p, &s) < 0.1);
 }
 
 int main(void)
@@ -118,6 +132,7 @@ int main(void)
         cmocka_unit_test(shares_come_back),
         cmocka_unit_test(a_patch_of_sun_opens_no_side),
         cmocka_unit_test(the_prior),
+        cmocka_unit_test(noise_refuses_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
