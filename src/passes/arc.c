@@ -292,9 +292,15 @@ static bool make_senders(pass_context *c, const gpu_image *sender, const gpu_ima
 
 static bool find_hidden_light(pass_context *c, error *e)
 {
-    mat3 map_from_camera = m3_mul(c->env->map_from_world, c->set.world_from_camera);
+    const pass_settings *s = &c->set;
+    const hidden_place at = {.gb = c->gb,
+                             .planes = &c->planes,
+                             .outside = &s->outside,
+                             .map_from_camera = m3_mul(c->env->map_from_world, s->world_from_camera),
+                             .upright_from_camera = s->upright_from_camera,
+                             .upright_eye = s->upright_eye};
     if (c->hidden_found) return true;
-    c->hidden_found = hidden_light(c->env, map_from_camera, c->gb, &c->planes, c->threads, c->hidden, e);
+    c->hidden_found = hidden_light(c->env, &at, c->threads, c->hidden, e);
     return c->hidden_found;
 }
 

@@ -55,20 +55,28 @@ static bool meets(const plane *p, const gbuffer *gb, vec3 place, vec3 d)
     return towards > 1e-6 && height >= -on_it && holds(p, v3_add(place, v3_scale(d, fmax(height, 0.0) / towards)));
 }
 
-bool hidden_light(const environment *env, mat3 map_from_camera, const gbuffer *gb, const plane_set *planes, int threads,
-                  double sh[HIDDEN_SH][3], error *e)
+// The share of the environment's light from the unit direction d that reaches `place`, in camera space.
+static double open_share(const hidden_place *at, vec3 place, vec3 d)
 {
-    mat3 camera_from_map = m3_transpose(map_from_camera);
+    double open = 1.0;
+    for (int k = 0; k < at->planes->count; k++)
+        open *= meets(&at->planes->planes[k], at->gb, place, d) ? 1.0 - at->planes->planes[k].belief : 1.0;
+    if (open == 0.0 || openness_is_whole(at->outside)) return open;
+    vec3 upright = v3_add(at->upright_eye, m3_apply(at->upright_from_camera, place));
+    return open * openness_towards(at->outside, upright, m3_apply(at->upright_from_camera, d));
+}
+
+bool hidden_light(const environment *env, const hidden_place *at, int threads, double sh[HIDDEN_SH][3], error *e)
+{
+    mat3 camera_from_map = m3_transpose(at->map_from_camera);
     double level = fmax(0.0, log2((double)env->levels[0].width / WIDTH)), all[SH_MAX][3];
     vec3 place;
     float *seen = mem_zero((size_t)WIDTH * HEIGHT, 4 * sizeof *seen, e);
-    bool ok = seen && find_middle(gb, &place, e);
+    bool ok = seen && find_middle(at->gb, &place, e);
     for (int i = 0; ok && i < WIDTH * HEIGHT; i++) {
         double phi = (0.5 - (i % WIDTH + 0.5) / WIDTH) * 2.0 * M_PI, theta = (i / WIDTH + 0.5) / HEIGHT * M_PI;
-        vec3 direction = v3(sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)), d = m3_apply(camera_from_map, direction);
-        double open = 1.0;
-        for (int k = 0; k < planes->count; k++)
-            open *= meets(&planes->planes[k], gb, place, d) ? 1.0 - planes->planes[k].belief : 1.0;
+        vec3 direction = v3(sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta));
+        double open = open_share(at, place, m3_apply(camera_from_map, direction));
         vec3 L = open > 0.0 ? v3_scale(environment_lookup(env, direction, level), open) : v3(0, 0, 0);
         seen[4 * i] = (float)L.x, seen[4 * i + 1] = (float)L.y, seen[4 * i + 2] = (float)L.z;
     }

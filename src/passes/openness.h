@@ -38,6 +38,9 @@ static inline double openness_mean(const openness *o)
     return sum / OPENNESS_COUNT;
 }
 
+// How open it is from a place in the unit direction d; both in the axes of the openness. As outside.glsl has it, but for suns.
+double openness_towards(const openness *o, vec3 place, vec3 d);
+
 // Whether nothing is closed.
 static inline bool openness_is_whole(const openness *o)
 {

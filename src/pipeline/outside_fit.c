@@ -163,31 +163,27 @@ static bool fit_with_bounce(model *m, const double prior[SHARE_UNKNOWNS], shares
 static const double MOST_LEFT = 0.9;
 // The same where nobody said that the environment lit the picture, and the picture shows no roof. Then it must be dark too: up to
 // the third of these shares of what the open sky would give, the outside is as fitted; from the second one on it is open.
-static const double MOST_LEFT_UNASKED = 0.5, MOST_LIGHT = 0.5, SURE_LIGHT = 0.25;
+static const double MOST_LEFT_UNASKED = 0.6, MOST_LIGHT = 0.5, SURE_LIGHT = 0.25;
+// It must be unlike an open sky's, too, which another exposure leaves as it is. Open places have .07 to .13, covered ones .53 to
+// .96 (`unlike`, tests/bench/RESULTS.md).
+// And the shares must explain clearly more of it than that sky does: light of another environment they do not.
+static const double UNLIKE = 0.3, MOST_OF_UNLIKE = 0.85;
 
 // More than this many times what the open sky would give, bounces included, is not that sky's light.
 static const double TOO_BRIGHT = 2.0;
 
-// Whether the frame shows where it ends: some background, beyond a crack or two.
-static bool shows_background(const gbuffer *g) { return (double)g->valid < 0.999 * (double)g->width * (double)g->height; }
+// Whether the frame shows more background than surfaces: that is an open place.
+static bool shows_background(const gbuffer *g) { return (double)g->valid < 0.5 * (double)g->width * (double)g->height; }
 
-// The picture's light over that with all open, whatever further G-buffers show: where they close what is open, a picture is not
+// The picture's light beside that with all open, whatever further G-buffers show: where they close what is open, a picture is not
 // too bright for its sky.
-static bool compare_light(const model *m, double *share, error *e)
+static bool compare_light(const model *m, light_comparison *found, error *e)
 {
     const openness open = openness_even(1.0);
-    const gbuffer *lit = &m->r->lit;
-    double seen = 0.0, all = 0.0;
     float *light = mem_pixels(3 * m->pixels, sizeof *light, e);
     bool ok = light && estimate(m, &open, false, light, NULL, e);
-    for (size_t i = 0; ok && i < 3 * m->pixels; i++) {
-        double weight = (double)lit->beauty[i / 3 * 4 + 3];
-        if (!(lit->depth[i / 3] > 0.0f)) continue;
-        seen += (double)lit->beauty[i / 3 * 4 + i % 3];
-        all += weight * (double)light[i];
-    }
+    if (ok) *found = shares_compare(&m->r->lit, light);
     free(light);
-    *share = all > 0.0 ? seen / all : 1.0;
     return ok;
 }
 
@@ -241,17 +237,30 @@ static model model_of(job *j, const frame_result *r, job_light *light)
 }
 
 // Whether the shares explain the picture's light; without, s holds none.
-static bool is_explained(const model *m, const char *file, bool told, bool unasked, double light, const shares *s)
+static bool is_explained(const model *m, const char *file, bool told, bool unasked, const light_comparison *own, const shares *s)
 {
     static const char other[] = "; lamps or another environment light it, and the outside is as without the option";
-    bool too_bright = light > TOO_BRIGHT, left = !too_bright && s->unexplained > (unasked ? MOST_LEFT_UNASKED : MOST_LEFT);
+    double most = unasked ? fmin(MOST_LEFT_UNASKED, MOST_OF_UNLIKE * own->unlike) : MOST_LEFT;
+    bool too_bright = own->share > TOO_BRIGHT, left = !too_bright && s->unexplained > most;
     if (told && too_bright)
-        log_warn(m->j->log, "beauty-env", "%s: its light is %.2g times what --beauty-env gives under an open sky%s", file, light,
-                 other);
+        log_warn(m->j->log, "beauty-env", "%s: its light is %.2g times what --beauty-env gives under an open sky%s", file,
+                 own->share, other);
     if (told && left)
         log_warn(m->j->log, "beauty-env", "%s: --beauty-env does not explain its light, of which %.2g is left%s", file,
                  s->unexplained, other);
     return !too_bright && !left;
+}
+
+// Whether the light is that of an open sky in another exposure.
+static bool is_dimmed(const model *m, const char *file, bool told, const light_comparison *own)
+{
+    if (own->share >= MOST_LIGHT || own->unlike > UNLIKE) return false;
+    if (told)
+        log_warn(m->j->log, "beauty-env",
+                 "%s: its light is that of an open sky under --beauty-env, but %.2g times as bright; the outside is open; "
+                 "--beauty-env-scale makes them alike",
+                 file, own->share);
+    return true;
 }
 
 // Nobody said that the environment lit the picture: from open to what was fitted, the darker the picture is.
@@ -272,22 +281,24 @@ bool outside_fit(job *j, frame_result *r, job_light *light, bool told, openness 
 {
     const openness prior = *out;
     const char *file = r->file ? r->file->path : "the picture";
-    double share;
+    light_comparison own;
     shares s;
     if (!r->lit.depth || r->lit.valid == 0) return true;
     bool unasked = !told && openness_is_whole(&prior);
     if (unasked && shows_background(&r->gb)) return true;
     model m = model_of(j, r, light);
     if (m.set.planes && !r->planes.found && !planes_find(&r->gb, &r->planes, e)) return false;
-    if (!find_walls(&m, &m.walls, e) || !compare_light(&m, &share, e)) return false;
-    log_info(j->log, "outside: the picture's own light is %.2g of what an open sky would give", share);
-    if (unasked && share >= MOST_LIGHT) return true;
-    if (share <= TOO_BRIGHT && !fit_shares(&m, &prior, share, &s, e)) return false;
-    if (!is_explained(&m, file, told, unasked, share, &s)) return true;
+    if (!find_walls(&m, &m.walls, e) || !compare_light(&m, &own, e)) return false;
+    log_info(j->log, "outside: the picture's own light is %.2g of what an open sky would give, and unlike it by %.2g", own.share,
+             own.unlike);
+    if (unasked && own.share >= MOST_LIGHT) return true;
+    if (openness_is_whole(&prior) && is_dimmed(&m, file, told, &own)) return true;
+    if (own.share <= TOO_BRIGHT && !fit_shares(&m, &prior, own.share, &s, e)) return false;
+    if (!is_explained(&m, file, told, unasked, &own, &s)) return true;
     *out = openness_of(&m, s.x);
     r->unexplained = s.unexplained;
     if (light != &j->light) out->suns = -1.0;
-    if (unasked) close_by_degrees(&m, file, share, out);
+    if (unasked) close_by_degrees(&m, file, own.share, out);
     say(j, r, out, s.unexplained);
     return true;
 }

@@ -124,3 +124,39 @@ void shares_fit(const gbuffer *lit, float *const column[SHARE_COLUMNS], const do
         solve(&t.n, s->x);
     }
 }
+
+// ---- an open sky
+
+typedef struct products {
+    double light, open;              // times the weight
+    double squares, mixed, of_light; // of areas: open x open, open x light, light x light; times the weight
+} products;
+
+static void compare_area(const gbuffer *lit, const float *open, products *p, int left, int top)
+{
+    double weight = 0.0, of_light[3] = {0}, of_open[3] = {0};
+    for (int y = top; y < top + AREA && y < lit->height; y++)
+        for (int x = left; x < left + AREA && x < lit->width; x++) {
+            size_t i = (size_t)y * (size_t)lit->width + (size_t)x;
+            double w = (double)lit->beauty[4 * i + 3];
+            if (!(lit->depth[i] > 0.0f) || w <= 0.0) continue;
+            weight += w;
+            for (size_t c = 0; c < 3; c++)
+                of_light[c] += (double)lit->beauty[4 * i + c], of_open[c] += w * (double)open[3 * i + c];
+        }
+    for (int c = 0; c < 3 && weight > 0.0; c++) {
+        p->light += of_light[c], p->open += of_open[c];
+        p->squares += of_open[c] * of_open[c] / weight;
+        p->mixed += of_open[c] * of_light[c] / weight;
+        p->of_light += of_light[c] * of_light[c] / weight;
+    }
+}
+
+light_comparison shares_compare(const gbuffer *lit, const float *open)
+{
+    products p = {0};
+    for (int y = 0; y < lit->height; y += AREA)
+        for (int x = 0; x < lit->width; x += AREA) compare_area(lit, open, &p, x, y);
+    double alike = p.squares > 0.0 && p.of_light > 0.0 ? p.mixed * p.mixed / (p.squares * p.of_light) : 0.0;
+    return (light_comparison){p.open > 0.0 ? p.light / p.open : 1.0, sqrt(fmax(0.0, 1.0 - alike))};
+}

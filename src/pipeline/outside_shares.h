@@ -18,6 +18,15 @@ typedef struct shares {
     double unexplained; // root mean square of what is left of the light, over that of the light; both over areas of 8 x 8 pixels
 } shares;
 
+// The light of a picture beside that of an open sky.
+typedef struct light_comparison {
+    double share;  // how much of it there is
+    double unlike; // what is left of it if that sky, brighter or darker, explains it, as `unexplained`
+} light_comparison;
+
+// lit: as below. open: 3 a pixel.
+light_comparison shares_compare(const gbuffer *lit, const float *open);
+
 // Least squares within bounds. lit: a small frame whose beauty holds the light to be explained, r g b times the weight in the
 // fourth. column: 3 a pixel, what each unknown adds if it is 1. prior: what the light says nothing about. s->x: where to start.
 // Sunlight falls in patches whose outlines no share can draw. So each pixel has its suns or has not, whichever leaves less of its

@@ -19,16 +19,24 @@
 #include "truth.h"
 
 // Irradiance over pi that a white environment gives hidden faces, by normal.
-static double light_of(const gbuffer *gb, const plane_set *planes, vec3 normal)
+static double light_in(const gbuffer *gb, const plane_set *planes, const openness *outside, vec3 normal)
 {
     error e = {0};
     environment white;
     log_t log = {0};
     double sh[HIDDEN_SH][3];
     must(environment_load(&(env_options){.up_z = true, .scale = 1.0}, &white, &log, &e), &e);
-    must(hidden_light(&white, gb->camera.world_from_camera, gb, planes, 2, sh, &e), &e);
+    const mat3 upright = gb->camera.world_from_camera;
+    const hidden_place at = {gb, planes, outside, upright, upright, gb->camera.origin};
+    must(hidden_light(&white, &at, 2, sh, &e), &e);
     environment_free(&white);
     return sh_irradiance_over_pi((const double(*)[3])sh, normal).x;
+}
+
+static double light_of(const gbuffer *gb, const plane_set *planes, vec3 normal)
+{
+    const openness open = openness_even(1.0);
+    return light_in(gb, planes, &open, normal);
 }
 
 static gbuffer ground_with_ball(double fov)
@@ -81,6 +89,49 @@ static void planes_block_where_they_are(void **state)
     gbuffer_free(&gb);
 }
 
+// What the planes leave is as open as the outside: everywhere, or towards one side.
+static void the_outside_counts(void **state)
+{
+    (void)state;
+    error e = {0};
+    gbuffer gb = ground_with_ball(60.0);
+    plane_set planes;
+    must(planes_find(&gb, &planes, &e), &e);
+    openness covered = openness_even(0.1), side = openness_even(0.0);
+    for (int i = 0; i <= 6; i++) {
+        double angle = i * M_PI / 6.0;
+        vec3 n = v3(sin(angle), 0, cos(angle));
+        assert_true(fabs(light_in(&gb, &planes, &covered, n) - 0.1 * light_of(&gb, &planes, n)) < 1e-6);
+    }
+    side.share[2 + OPENNESS_COLUMNS] = side.share[2 + OPENNESS_COLUMNS + 1] = 1.0; // of the horizon, from -x on
+    side.low = v3(-10, -10, -10), side.high = v3(10, 10, 10);
+    const plane_set none = {0};
+    assert_true(light_in(&gb, &none, &side, v3(-1, 0, 0)) > 4.0 * fabs(light_in(&gb, &none, &side, v3(1, 0, 0))));
+    gbuffer_free(&gb);
+}
+
+// The grid of the openness: its points, the seam, the poles, between two points.
+static void openness_between_points(void **state)
+{
+    (void)state;
+    openness o = openness_even(0.0);
+    for (int i = 0; i < OPENNESS_COUNT; i++) o.share[i] = 0.01 * i;
+    const vec3 middle = v3(0, 0, 0);
+    o.low = v3(-2, -2, -2), o.high = v3(2, 2, 2);
+    assert_true(fabs(openness_towards(&o, middle, v3(0, 0, 1)) - o.share[0]) < 1e-9);
+    assert_true(fabs(openness_towards(&o, middle, v3(0, 0, -1)) - o.share[1]) < 1e-9);
+    for (int k = 0; k < OPENNESS_COLUMNS; k++) {
+        double around = 2.0 * M_PI * (0.5 - (double)k / OPENNESS_COLUMNS);
+        double *row = o.share + 2 + OPENNESS_COLUMNS, next = row[(k + 1) % OPENNESS_COLUMNS];
+        assert_true(fabs(openness_towards(&o, middle, v3(cos(around), sin(around), 0)) - row[k]) < 1e-9);
+        around -= M_PI / OPENNESS_COLUMNS;
+        assert_true(fabs(openness_towards(&o, middle, v3(cos(around), sin(around), 0)) - 0.5 * (row[k] + next)) < 1e-9);
+    }
+    // From beside the +x wall, the way to +y leaves the box in its corner.
+    double corner = openness_towards(&o, middle, v3(sqrt(0.5), sqrt(0.5), 0));
+    assert_true(fabs(openness_towards(&o, v3(2, 0, 0), v3(0, 1, 0)) - corner) < 1e-9);
+}
+
 // Nothing to see and no plane is normal input.
 static void empty_frames(void **state)
 {
@@ -130,10 +181,9 @@ static void far_ground_does_not_light_itself(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ground_blocks_half),
-        cmocka_unit_test(planes_block_where_they_are),
-        cmocka_unit_test(empty_frames),
-        cmocka_unit_test(far_ground_does_not_light_itself),
+        cmocka_unit_test(ground_blocks_half), cmocka_unit_test(planes_block_where_they_are),
+        cmocka_unit_test(the_outside_counts), cmocka_unit_test(openness_between_points),
+        cmocka_unit_test(empty_frames),       cmocka_unit_test(far_ground_does_not_light_itself),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

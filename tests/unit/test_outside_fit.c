@@ -163,8 +163,8 @@ static void a_curtain_refuses_no_fit(void **state)
     rig_close(&r);
 }
 
-// Without a word on what lit it, a picture that is as bright as under an open sky stays open, one that is a tenth as bright and
-// shows no background is closed.
+// Without a word on what lit it, a picture that is as bright as under an open sky stays open, and one that looks like it in
+// another exposure. One that is a tenth as bright and lit through a window is closed, whether the window is in view or not.
 static void the_unasked_decision(void **state)
 {
     (void)state;
@@ -183,10 +183,23 @@ static void the_unasked_decision(void **state)
     assert_true(openness_mean(&o) < 0.4);
     free(truth);
     gbuffer_free(&gb);
+    // The lower half of the window is in view, no ceiling.
+    scene towards = room(true, true);
+    towards.target = v3(2, 5, 0.5);
+    look(&towards, W, H, 40.0, &gb);
+    assert_in_range(gb.valid, PIXELS / 2, PIXELS - PIXELS / 20);
+    truth = truth_of(&towards, &gb, &r.job.light.env);
+    assert_true(fit_to(&r, &gb, truth, false, 1.0, &o));
+    assert_true(openness_mean(&o) < 0.4);
+    free(truth);
+    gbuffer_free(&gb);
     look(&table, W, H, 30.0, &gb);
     assert_int_equal(gb.valid, PIXELS);
     truth = truth_of(&table, &gb, &r.job.light.env);
     assert_false(fit_to(&r, &gb, truth, false, 1.0, &o));
+    for (int i = 0; i < 4 * PIXELS; i++) truth[i] *= 0.2f; // the same under a sky of another exposure
+    assert_false(fit_to(&r, &gb, truth, false, 1.0, &o));
+    assert_false(fit_to(&r, &gb, truth, true, 1.0, &o));
     free(truth);
     gbuffer_free(&gb);
     rig_close(&r);
