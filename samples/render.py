@@ -3,8 +3,9 @@
 
     blender -b --factory-startup -P samples/render.py -- --scene still --out samples
     blender -b --factory-startup -P samples/render.py -- --all --variant 7 --out /tmp/unseen
+    blender -b --factory-startup -P samples/render.py -- --mitsuba living-room/scene.xml --size 240x135 --spp 48 --out /tmp/rooms
 
-Everything is procedural and follows from (scene, variant): no assets, no numpy. Blender 3.4 with Cycles on the CPU;
+But for --mitsuba, everything is procedural and follows from (scene, variant): no assets, no numpy. Blender 3.4 with Cycles on the CPU;
 oiiotool is used to cut the truth channels out of a second render and to measure its noise. See README.md.
 
 Conventions written to scenes.json: pixels count from the top left corner, the centre of the first pixel is (0.5, 0.5);
@@ -24,7 +25,7 @@ from mathutils import Matrix, Vector
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from scenes import covered, export, indoors, outdoors, parts, skies  # noqa: E402 (Blender's Python does not look beside the script)
+from scenes import covered, export, indoors, mitsuba, outdoors, parts, skies  # noqa: E402 (Blender's Python does not look beside the script)
 from scenes.cycles import cut_truth, describe_camera, measure_noise, passes, render, scene_size, settings, world  # noqa: E402
 from scenes.shapes import Layout  # noqa: E402
 
@@ -60,7 +61,8 @@ def record(out, name, entry):
         with open(path) as f:
             entries = json.load(f)
     entries = [e for e in entries if e["name"] != name] + [entry]
-    entries.sort(key=lambda e: list(SCENES).index(e["name"]))
+    order = list(SCENES)
+    entries.sort(key=lambda e: (order.index(e["name"]) if e["name"] in order else len(order), e["name"]))
     with open(path, "w") as f:
         json.dump(entries, f, indent=1)
         f.write("\n")
@@ -164,6 +166,7 @@ def make(name, args):
 def main():
     parser = argparse.ArgumentParser(prog="render.py")
     parser.add_argument("--scene", choices=list(SCENES))
+    parser.add_argument("--mitsuba", metavar="FILE", help="a scene.xml of somebody else, named as its folder (scenes/mitsuba.py); --sky is sky_sun.exr")
     parser.add_argument("--all", action="store_true", help="the five samples, one after the other")
     parser.add_argument("--covered", action="store_true", help="the six whose light or occlusion comes from what is not in the frame")
     parser.add_argument("--out", required=True)
@@ -182,8 +185,13 @@ def main():
     parser.add_argument("--export-proxies", action="store_true",
                         help="write proxies/NAME.json, spheres for what lies beside the middle third of the picture, and render nothing")
     args = parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
+    if args.mitsuba:
+        args.mitsuba = os.path.abspath(args.mitsuba)
+        args.scene = os.path.basename(os.path.dirname(args.mitsuba))
+        SCENES[args.scene] = (lambda layout: mitsuba.load(args.mitsuba), "sky_sun.exr", 0.5, False)
+        SAMPLES_PER_PIXEL[args.scene] = SAMPLES_PER_PIXEL["room"]
     if not args.scene and not args.all and not args.covered:
-        parser.error("--scene NAME, --all or --covered")
+        parser.error("--scene NAME, --mitsuba FILE, --all or --covered")
     names = (SAMPLES if args.all else ()) + (COVERED if args.covered else ()) or (args.scene,)
     for name in names:
         size = args.size or ("96x54" if name == "hot" else "320x180" if name in COVERED else "480x270")
