@@ -42,26 +42,52 @@ static void drop(float **array, bool needed)
     *array = NULL;
 }
 
+// One pixel of each step x step of a frame, with its light as beauty.
+static bool pick(const gbuffer *g, int step, gbuffer *out, error *e)
+{
+    *out = (gbuffer){.width = g->width / step, .height = g->height / step, .camera = g->camera, .valid = g->valid};
+    out->data_window = out->display_window = (box2){0, 0, out->width - 1, out->height - 1};
+    out->camera.fx /= step, out->camera.fy /= step;
+    out->camera.cx = (g->camera.cx - step / 2 - 0.5) / step + 0.5, out->camera.cy = (g->camera.cy - step / 2 - 0.5) / step + 0.5;
+    size_t pixels = (size_t)out->width * (size_t)out->height;
+    if (!(out->depth = mem_pixels(pixels, sizeof(float), e)) || !(out->normal = mem_pixels(4 * pixels, sizeof(float), e)) ||
+        !(out->beauty = mem_pixels(4 * pixels, sizeof(float), e)) ||
+        (g->albedo && !(out->albedo = mem_pixels(4 * pixels, sizeof(float), e)))) {
+        gbuffer_free(out);
+        return false;
+    }
+    for (size_t to = 0; to < pixels; to++) {
+        size_t x = to % (size_t)out->width, y = to / (size_t)out->width, n = (size_t)step;
+        size_t from = (y * n + n / 2) * (size_t)g->width + x * n + n / 2;
+        out->depth[to] = g->depth[from];
+        memcpy(out->normal + 4 * to, g->normal + 4 * from, 4 * sizeof(float));
+        if (g->albedo) memcpy(out->albedo + 4 * to, g->albedo + 4 * from, 4 * sizeof(float));
+        light_of_pixel(g, from, out->beauty + 4 * to);
+    }
+    return true;
+}
+
+static bool is_larger(const gbuffer *g, int step, size_t pixels)
+{
+    return (size_t)(g->width / step) * (size_t)(g->height / step) > pixels;
+}
+
 bool outside_fit_gather(const job *j, frame_result *r, error *e)
 {
-    gbuffer *g = &r->gb, lit = *g, next;
+    gbuffer *g = &r->gb, lit, next;
     if (!r->plan.need_to_fit) return true;
-    size_t pixels = (size_t)g->width * (size_t)g->height;
     bool seen = g->diffuse_direct || (g->beauty && g->albedo), ok = true;
-    float *light = NULL;
     if (seen && g->valid > 0) {
-        light = mem_pixels(4 * pixels, sizeof *light, e);
-        ok = light != NULL;
-        for (size_t i = 0; ok && i < pixels; i++) light_of_pixel(g, i, light + 4 * i);
-        lit.beauty = light;
-        for (bool first = true; ok && (first || (size_t)lit.width * (size_t)lit.height > MOST_PIXELS); first = false) {
+        int step = 1;
+        while (is_larger(g, 2 * step, 4 * MOST_PIXELS)) step *= 2; // so that each pixel in the end is a mean of at least four
+        ok = pick(g, step, &lit, e);
+        for (bool first = true; ok && (first || is_larger(&lit, 1, MOST_PIXELS)); first = false) {
             ok = gbuffer_halve(&lit, j->threads, &next, e);
-            if (!first) gbuffer_free(&lit);
+            gbuffer_free(&lit);
             lit = next;
         }
         if (ok) r->lit = lit, r->lit_direct = g->diffuse_direct;
         for (size_t i = 0; ok && i < (size_t)lit.width * (size_t)lit.height; i++) lit.normal[4 * i + 3] = 0.0f;
-        free(light);
     }
     drop(&g->beauty, r->plan.need & (NEED_BEAUTY | NEED_BACKGROUND));
     drop(&g->albedo, r->plan.need & NEED_ALBEDO);

@@ -205,6 +205,39 @@ static void the_unasked_decision(void **state)
     rig_close(&r);
 }
 
+// The small frame shows the large one's surfaces where they are, with the light that is there: light that is a function of the
+// place still is one.
+static void the_small_frame_is_the_same_place(void **state)
+{
+    (void)state;
+    error e = {0};
+    job j = {.threads = 2};
+    gbuffer gb;
+    scene s = {.eye = v3(0.5, -3, 4), .target = v3(0, 0, 0.3), .radius = 0.5};
+    scene_add_plane(&s, v3(0, 0, 0), v3(0, 0, 1), grey);
+    look(&s, 1031, 581, 30.0, &gb);
+    frame_result f = {.gb = gb, .plan = {.need = ~0u, .need_to_fit = NEED_DIFFUSE_LIGHT}};
+    f.gb.diffuse_direct = mem_pixels(4 * (size_t)gb.width * (size_t)gb.height, sizeof(float), &e);
+    assert_non_null(f.gb.diffuse_direct);
+    for (int i = 0; i < gb.width * gb.height; i++)
+        for (int k = 0; k < 3; k++)
+            f.gb.diffuse_direct[4 * i + k] = (float)(3.0 + gbuffer_position(&gb, i % gb.width, i / gb.width).x);
+    must(outside_fit_gather(&j, &f, &e), &e);
+    assert_in_range(f.lit.width * f.lit.height, 2000, 1 << 14);
+    for (int i = 0; i < f.lit.width * f.lit.height; i++) {
+        int x = i % f.lit.width, y = i / f.lit.width;
+        if (x + 1 == f.lit.width || y + 1 == f.lit.height) continue; // means over what is left of a block
+        vec3 p = gbuffer_position(&f.lit, x, y);
+        vec3 world = v3_add(gb.camera.origin, m3_apply(gb.camera.world_from_camera, p));
+        double pixel = p.z / f.lit.camera.fx, weight = (double)f.lit.beauty[4 * i + 3];
+        assert_true(fabs(world.z) < 1e-4 && weight > 0.0);
+        assert_true(fabs((double)f.lit.beauty[4 * i] / weight - 3.0 - p.x) < 0.05 * pixel);
+    }
+    free(f.gb.diffuse_direct);
+    gbuffer_free(&f.lit);
+    gbuffer_free(&gb);
+}
+
 // Lamps that hang in the picture: no outside explains their pools of light, so the prior stays.
 static void lamps_explain_nothing(void **state)
 {
@@ -240,9 +273,8 @@ static void lamps_explain_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(light_tells_where_it_is_open),
-        cmocka_unit_test(a_curtain_refuses_no_fit),
-        cmocka_unit_test(the_unasked_decision),
+        cmocka_unit_test(light_tells_where_it_is_open), cmocka_unit_test(a_curtain_refuses_no_fit),
+        cmocka_unit_test(the_unasked_decision),         cmocka_unit_test(the_small_frame_is_the_same_place),
         cmocka_unit_test(lamps_explain_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
