@@ -53,6 +53,15 @@ void sequence_report_add(sequence_report *s, const sequence_frame *f)
     json_object_array_add(s->frames, o);
 }
 
+// The frames of the shot that were looked at for what a frame does not show, once any was.
+static void put_surround(json_object *o, const job *j)
+{
+    char text[256];
+    if (!j->files || j->files->shot.count == 0 || !j->views_loaded) return;
+    frames_format(&j->files->shot, text, sizeof text);
+    json_put_text(o, "surround_frames", text);
+}
+
 // What bounds the sequence: the thread that is busy nearly all the time, or, where `cores` is near the machine's, the CPU.
 static json_object *busy_of(const sequence_report *s)
 {
@@ -79,6 +88,7 @@ bool sequence_report_write(sequence_report *s, const job *j, const frame_list *f
     json_put_text(o, "args", args);
     free(args);
     if (j->is_shot && j->o->radius_unit == RADIUS_AUTO) json_put_number(o, "radius", j->shot.radius);
+    put_surround(o, j);
     json_put(o, "done", json_object_new_int(s->done));
     json_put(o, "skipped", json_object_new_int(s->skipped));
     json_put(o, "failed", json_object_new_int(s->failed));

@@ -13,8 +13,9 @@ cd "$dir" || exit 1
 change() { "$motion" score 240 135 . "$1" curtain | cut -f 2; }
 look="--radius 0.8 --layers occlusion --keep none --float"
 "$SSDO" -q in.#.exr -o alone.#.exr $look || die "without"
-"$SSDO" -v in.#.exr -o all.#.exr $look --surround shot >log 2>&1 || die "--surround shot"
+"$SSDO" -v in.#.exr -o all.#.exr $look --surround shot --report shot.json >log 2>&1 || die "--surround shot"
 grep -q 'surround: frames 1-8 of the shot' log || die "-v does not say which frames"
+grep -q '"surround_frames": "1-8"' shot.json || die "the report does not say which frames"
 alone=$(change alone) all=$(change all)
 echo "figure: change in a shot that a curtain leaves: $alone alone, $all with --surround shot"
 awk -v a="$alone" -v b="$all" 'BEGIN { exit !(a > 0.02 && b < 0.014) }' || die "change $alone alone, $all with the shot"
