@@ -12,6 +12,9 @@
 #include "include/environment.glsl"
 #include "include/arc_slices.glsl"
 #include "include/arc_bounce.glsl"
+#ifdef SURROUND
+#include "include/outlook.glsl"
+#endif
 
 void main() {
     ivec2 p;
@@ -27,6 +30,9 @@ void main() {
             Slice s = march_slice(centre, i);
             all += s.weight;
             add_bounce(bounced, centre, s);
+#ifdef SURROUND
+            bounced += s.weight * look_outside(centre, s).sent;
+#endif
         }
     }
     imageStore(indirect_image, p, vec4(params.strength * bounced / all, 0.0));

@@ -14,6 +14,9 @@
 #ifdef BOUNCE
 #include "include/arc_bounce.glsl"
 #endif
+#ifdef SURROUND
+#include "include/outlook.glsl"
+#endif
 
 layout(rgba32f) writeonly uniform image2D radiance_image;
 #ifdef VISIBILITY
@@ -30,12 +33,16 @@ struct Light {
 // What the smaller one leaves out beside the slice, the slices of neighbouring pixels see. Measured: tests/bench/RESULTS.md, Sampling.
 const float FOOTPRINT = 0.125;
 
+#ifdef SURROUND
+void add_sky(inout Light light, Centre o, Slice s, Outlook outlook) {
+#else
 void add_sky(inout Light light, Centre o, Slice s) {
+#endif
     const float width = PI / float(CELLS);
     const vec2 half_turn = vec2(cos(0.5 * width), sin(0.5 * width));
     float from = s.n - 0.5 * PI, c = 0.0, wedge = PI / float(params.slices);
     vec2 edge = vec2(s.side.sin_n, -s.side.cos_n); // cosine and sine of `from`
-#ifdef OUTSIDE
+#if defined(OUTSIDE) && !defined(SURROUND)
     Exits exits = exits_of(o.P, o.V, s.lines);
 #endif
     for (int i = 0; i < CELLS; i++) {
@@ -44,7 +51,9 @@ void add_sky(inout Light light, Centre o, Slice s) {
         float next = i + 1 == CELLS ? 1.0 : share_at(s.side, from + float(i + 1) * width, edge);
         uvec2 cell = sectors_between(c, next, s.noise.y);
         float share = sector_share(cell), open = sector_share(cell & ~s.sectors.blocked);
-#ifdef OUTSIDE
+#ifdef SURROUND
+        open = open_share(cell & ~s.sectors.blocked, s.sectors.seen, outlook.open[i]);
+#elif defined(OUTSIDE)
         vec2 look = look_in(s.side, from + float(i) * width, width, i, s.noise.y);
         open = open_share(cell & ~s.sectors.blocked, s.sectors.seen, openness(o.V, s.across, look, exits));
 #endif
@@ -86,9 +95,17 @@ void main() {
     for (int i = 0; i < params.slices; i++) {
         Slice s = march_slice(centre, i);
         all += s.weight;
+#ifdef SURROUND
+        Outlook outlook = look_outside(centre, s);
+        add_sky(light, centre, s, outlook);
+#else
         add_sky(light, centre, s);
+#endif
 #ifdef BOUNCE
         add_bounce(bounced, centre, s);
+#ifdef SURROUND
+        bounced += s.weight * outlook.sent;
+#endif
 #endif
     }
     light.open_luminance /= all;

@@ -3,8 +3,8 @@
 PICTURE(rgba32f, sender_image); // at the receiver
 layout(rgba32f) writeonly uniform image2D indirect_image;
 
-#ifdef OUTSIDE
-PICTURE(rgba32f, outside_image); // one texel: what surfaces outside the frame send
+#if defined(OUTSIDE) && !defined(SURROUND)
+PICTURE(rgba32f, outside_image); // first texel: what surfaces outside the frame send
 vec3 outside_light = vec3(0.0);
 
 // The share of a slice's sectors that meet a surface outside the frame.
@@ -27,14 +27,14 @@ float closed_share(Centre o, Slice s) {
 // Before a receiver's slices: what is guessed of surfaces that the picture does not show.
 void guess_light(Receiver here) {
     guess_of_receiver(FETCH(sender_image, here.pixel).rgb, here.N);
-#ifdef OUTSIDE
+#if defined(OUTSIDE) && !defined(SURROUND)
     outside_light = FETCH(outside_image, ivec2(0)).rgb;
 #endif
 }
 
 void add_bounce(inout vec3 bounced, Centre o, Slice s) {
     bounced += s.weight * s.sectors.light;
-#ifdef OUTSIDE
+#if defined(OUTSIDE) && !defined(SURROUND)
     bounced += s.weight * closed_share(o, s) * outside_light;
 #endif
 }

@@ -70,5 +70,10 @@ float share_at(Side s, float t, vec2 d) {
 }
 float share_at(Side s, float t) { return share_at(s, t, vec2(cos(t), sin(t))); }
 
+// The share at which a cell of the slice ends.
+float cell_end(Side s, float n, int i) {
+    return i < 0 ? 0.0 : i + 1 == CELLS ? 1.0 : share_at(s, n - 0.5 * PI + float(i + 1) * PI / float(CELLS));
+}
+
 // A direction (cos, sin) turned by another.
 vec2 turned(vec2 d, vec2 by) { return vec2(d.x * by.x - d.y * by.y, d.x * by.y + d.y * by.x); }

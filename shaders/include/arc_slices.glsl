@@ -5,6 +5,9 @@
 #if defined(FURTHER) && !defined(EVIDENCE)
 #define EVIDENCE
 #endif
+#if defined(SURROUND) && !defined(OUTSIDE)
+#define OUTSIDE
+#endif
 
 #include "include/arc_params.glsl"
 #include "include/arc_receiver.glsl"

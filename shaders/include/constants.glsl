@@ -32,5 +32,7 @@
 #define OPENNESS_COUNT (2 + OPENNESS_COLUMNS * OPENNESS_ROWS)
 #define OPENNESS_VECTORS ((OPENNESS_COUNT + 3) / 4)
 
-#define SURROUND_WIDTH 512 // of the map about the eye (src/passes/surround.h)
-#define SURROUND_HEIGHT 256
+// The surround (src/passes/surround.h): texels a side of a map of what is around an eye, and of what that sends; maps that one look tries.
+#define SURROUND_SIDE 384
+#define SURROUND_COARSE 96
+#define SURROUND_TRIES 4

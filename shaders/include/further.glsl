@@ -134,11 +134,6 @@ uint views_around(vec3 P) {
     return set;
 }
 
-// The share at which a cell of the slice ends.
-float cell_end(Side s, float n, int i) {
-    return i < 0 ? 0.0 : i + 1 == CELLS ? 1.0 : share_at(s, n - 0.5 * PI + float(i + 1) * PI / float(CELLS));
-}
-
 // The slice's undecided sectors, cell by cell: one ray of each cell that has any.
 void decide_by_views(inout Sectors sectors, Side s, vec3 V, vec3 across, float n, vec3 P, uint views, float place_jitter, float jitter) {
     const float width = PI / float(CELLS);

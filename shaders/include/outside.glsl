@@ -3,122 +3,7 @@
 // frame's mean light.
 
 #ifdef SURROUND
-// The surround (src/passes/surround.h): what further G-buffers show, each around its own eye, one map below the other. A texel holds the
-// distance of a shell about the eye, negative where that is an opening and 0 where nothing is known; and the distance of what is seen
-// through the opening, 0 for the sky. The last row holds the eyes, in camera space.
-PICTURE(rg32f, surround_image);
-
-const int SURROUND_STEPS = 12, SURROUND_HALVINGS = 4;
-const float SHELL_STEP = 0.2;  // between two directions the shell steps by more than this share: an edge, not a surface
-const float BEYOND = 1.02;     // what is not farther than this lies on the shell
-const float OWN_EYE = 1e-4;    // squared share of the receiver's distance: an eye that near is the frame's own
-const float OFF_SURFACE = 0.05; // radians: before that the receiver's own surface could block it
-const float OUT_OF_SIGHT = 0.3; // how open the directions are, out there, that no eye sees
-
-vec2 shell_at(int view, vec3 direction) { // camera space
-    ivec2 size = ivec2(SURROUND_WIDTH, SURROUND_HEIGHT);
-    return FETCH(surround_image, min(ivec2(map_uv(to_map(direction)) * vec2(size)), size - 1) + ivec2(0, view * SURROUND_HEIGHT)).rg;
-}
-
-vec3 surround_eye(int view) {
-    int row = params.views * SURROUND_HEIGHT;
-    return vec3(FETCH(surround_image, ivec2(2 * view, row)).rg, FETCH(surround_image, ivec2(2 * view + 1, row)).r);
-}
-
-// A ray from a point, as an eye sees it. It turns by the angle `whole` until infinity. At the angle a it is `rise` / sin(whole - a) away
-// from the eye (law of sines), and so are all distances here. It is indoors inside the shell, and outdoors once it has passed an opening.
-struct Ray {
-    vec3 towards, aside; // unit: where it starts, and across that to where it goes
-    float whole, rise;
-    float from;          // up to this angle another pass has found what blocks it
-    bool outdoors, left; // left: through an opening that it has met
-    bool before;         // at the last look it was nearer than what can block it
-    float angle, wall;   // of the last look; wall: how far what can block it was there
-};
-
-const float OPEN = 1.0, BLOCKED = 0.0, UNDECIDED = -1.0;
-
-vec3 heading(Ray r, float a) { return cos(a) * r.towards + sin(a) * r.aside; }
-bool is_beyond(Ray r, float a, float wall) { return r.rise > wall * (BEYOND * sin(r.whole - a)); }
-
-Ray ray_from(vec3 P, vec3 direction, float from) {
-    Ray r;
-    float size = length(P), cosine = dot(P, direction) / size;
-    r.towards = P / size;
-    r.aside = direction - cosine * r.towards;
-    float sine = length(r.aside);
-    r.aside /= max(sine, 1e-6);
-    r.whole = fast_atan(sine, cosine);
-    r.rise = size * sine;
-    r.from = from;
-    r.before = r.left = r.outdoors = false;
-    r.angle = r.wall = 0.0;
-    return r;
-}
-
-// Between the last look and the one at angle a the ray has passed the shell. Finds where; `shell` becomes what is there. True if it has
-// only passed behind the edge of something: then the shell is not connected there, and the ray may be free.
-bool passes_an_edge(Ray r, int view, float a, inout vec2 shell) {
-    float low = r.angle, high = a, low_wall = r.wall, high_wall = abs(shell.x);
-    for (int k = 0; k < SURROUND_HALVINGS; k++) {
-        float middle = 0.5 * (low + high);
-        vec2 s = shell_at(view, heading(r, middle));
-        if (s.x != 0.0 && is_beyond(r, middle, abs(s.x))) {
-            high = middle;
-            shell = s;
-            high_wall = abs(s.x);
-        } else {
-            low = middle;
-            low_wall = s.x != 0.0 ? abs(s.x) : low_wall;
-        }
-    }
-    return abs(high_wall - low_wall) > SHELL_STEP * low_wall;
-}
-
-// A look at angle a, indoors: past a surface the ray is blocked, past an opening it is outdoors.
-float look_indoors(inout Ray r, int view, float a, bool last, inout vec2 shell) {
-    bool beyond = last || is_beyond(r, a, abs(shell.x));
-    bool passes = beyond && r.before && !passes_an_edge(r, view, a, shell);
-    bool leaves = shell.x < 0.0 && (passes || last);
-    if (leaves) r.left = r.outdoors = true;
-    r.before = !beyond;
-    if (leaves) return !last ? UNDECIDED : shell.y > 0.0 ? BLOCKED : OPEN;
-    return passes && a > r.from ? BLOCKED : UNDECIDED;
-}
-
-// A look at angle a, outdoors: what is seen through the opening blocks the ray. It is indoors again where it comes before a surface of
-// the shell.
-float look_outdoors(inout Ray r, float a, bool last, vec2 shell) {
-    if (shell.x > 0.0) {
-        r.before = !last && !is_beyond(r, a, shell.x);
-        r.outdoors = !r.before;
-        r.left = r.left && r.outdoors;
-        return UNDECIDED;
-    }
-    bool beyond = shell.y > 0.0 && (last || is_beyond(r, a, shell.y));
-    bool behind_an_edge = abs(shell.y - r.wall) > SHELL_STEP * shell.y; // of what is seen there
-    bool blocked = beyond && r.before && a > r.from && !behind_an_edge;
-    r.before = !beyond;
-    return last || blocked ? (beyond ? BLOCKED : OPEN) : UNDECIDED;
-}
-
-// Follows the ray from P in a direction through one map: how open it is, or UNDECIDED if that map does not tell.
-float leaves_by_opening(int view, vec3 P, vec3 direction, float from) {
-    Ray r = ray_from(P, direction, from);
-    vec2 start = shell_at(view, r.towards);
-    r.outdoors = start.x < 0.0 && length(P) > -start.x;
-    for (int i = 0; i <= SURROUND_STEPS; i++) {
-        bool last = i == SURROUND_STEPS; // at infinity
-        float a = last ? r.whole : r.whole * (float(i) + 0.5) / float(SURROUND_STEPS + 1);
-        vec2 shell = shell_at(view, heading(r, a));
-        if (shell.x == 0.0) continue;
-        float open = r.outdoors ? look_outdoors(r, a, last, shell) : look_indoors(r, view, a, last, shell);
-        if (open != UNDECIDED) return open;
-        r.angle = a;
-        r.wall = r.outdoors ? shell.y : abs(shell.x);
-    }
-    return r.left ? OPEN : r.outdoors ? OUT_OF_SIGHT : UNDECIDED;
-}
+#include "include/surround.glsl"
 #endif
 
 // The share of `open` sectors that are open outside, where those that are not `seen` are so by the share `unseen`.
@@ -200,16 +85,36 @@ float unknown_openness(vec3 P, vec3 d) { // upright axes, d unit
                mix(stored_openness(y + 1, x), stored_openness(y + 1, x + 1), t.x), t.y);
 }
 
-// How open the outside is in the direction at.x V + at.y across: closed if one map shows a surface there, else as open as one shows.
-float openness(vec3 V, vec3 across, vec2 at, Exits x) {
-    float open = -1.0;
 #ifdef SURROUND
-    for (int i = 0; i < params.views; i++) {
-        vec3 eye = surround_eye(i), P = x.P - eye;
-        bool own = dot(eye, eye) < OWN_EYE * dot(x.P, x.P); // only for the frame's own eye the march has looked already
-        float o = leaves_by_opening(i, P, at.x * V + at.y * across, own ? (at.y > 0.0 ? x.right : x.left) : OFF_SURFACE);
-        open = o == 0.0 || open == 0.0 ? 0.0 : max(open, o);
+// What the maps tell of a direction from P, camera space: how open it is, UNDECIDED if none tells. The first that decides does. Those that
+// see the most of what the frame does not come first (src/passes/surround_image.c). exit: the angle from the view ray at which it leaves the
+// frame, as far as which the march has looked already. met: the texel of `surround_light_image` that shows what blocks it.
+float shown_openness(vec3 P, vec3 direction, float exit, out ivec2 met) {
+    vec3 d = to_map(direction), from_eye = to_map(P), way;
+    float open = UNDECIDED;
+    met = ivec2(0);
+    for (int i = 0; i < params.views && (open == UNDECIDED || open == OUT_OF_SIGHT); i++) {
+        vec4 eye = arc_block.view_eye[i];
+        bool own = dot(eye.xyz, eye.xyz) < OWN_EYE * dot(P, P); // only for the frame's own eye the march has looked already
+        float o = follow(int(eye.w), from_eye + eye.xyz, d, own ? exit : OFF_SURFACE, way);
+        if (o == BLOCKED) met = surround_texel(int(eye.w), way, SURROUND_COARSE);
+        open = o == UNDECIDED ? open : o;
     }
+    return open;
+}
 #endif
-    return open >= 0.0 ? open : unknown_openness(upright(x.P), upright(at.x * V + at.y * across));
+
+// How open the outside is in the direction at.x V + at.y across, and in the surround what closes it.
+float openness(vec3 V, vec3 across, vec2 at, Exits x, out ivec2 met) {
+    vec3 direction = at.x * V + at.y * across;
+#ifdef SURROUND
+    float shown = shown_openness(x.P, direction, at.y > 0.0 ? x.right : x.left, met);
+    if (shown >= 0.0) return shown;
+#endif
+    met = ivec2(-1);
+    return unknown_openness(upright(x.P), upright(direction));
+}
+float openness(vec3 V, vec3 across, vec2 at, Exits x) {
+    ivec2 met;
+    return openness(V, across, at, x, met);
 }

@@ -13,7 +13,7 @@ PARAMS(arc_params) {
     int exitant;
     float inverse_steps;
     int before;          // slices of earlier rounds
-    int views;           // maps of the surround
+    int views;           // maps of the surround that a look tries
     float sun_openness;  // share of unseen directions outside the frame that are open to suns; below 0: as of others
     int side;            // of the block of pixels that one of a smaller frame stands for (RECEIVERS)
     int further;         // further views
@@ -29,4 +29,5 @@ PARAMS(arc_params) {
     vec4 further_rows[3 * MAX_FURTHER]; // from this camera space to the view's
     vec4 further_lens[MAX_FURTHER];     // fx fy cx cy
     vec4 further_size[MAX_FURTHER];     // width, height, first column and row of its picture
+    vec4 view_eye[SURROUND_TRIES]; // from a map's eye to the frame's, map axes; w which map
 } END_PARAMS(arc_params)

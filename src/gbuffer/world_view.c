@@ -145,13 +145,13 @@ bool latlong_fit(const float *positions, int width, int height, latlong_camera *
 static const double FARTHEST = 1e9;
 static const double ON_RAY = 0.999; // cosine
 
-static float *positions_of(const exrio_file *file, const resolution *r, int *width, int *height, error *e)
+static float *pass_of(const exrio_file *file, const resolution *r, role what, int *width, int *height, error *e)
 {
     gbuffer frame = {.data_window = file->parts[r->main_part].data_window};
     const build b = {.file = file, .r = r, .g = &frame};
     plane p[3];
     *width = box2_width(frame.data_window), *height = box2_height(frame.data_window);
-    for (int k = 0; k < 3; k++) p[k] = build_plane(&b, ROLE_POSITION, k);
+    for (int k = 0; k < 3; k++) p[k] = build_plane(&b, what, k);
     float *out = mem_pixels((size_t)*width * (size_t)*height, 3 * sizeof *out, e), *to = out;
     for (int y = 0; out && y < *height; y++)
         for (int x = 0; x < *width; x++)
@@ -181,7 +181,7 @@ bool gbuffer_pixel_empty(const void *gb, int x, int y)
 }
 
 typedef struct latlong_picture {
-    const float *positions;
+    const float *positions, *albedo; // albedo: NULL where there is none
     int width, height;
     const latlong_camera *camera;
 } latlong_picture;
@@ -195,17 +195,27 @@ static bool latlong_empty(const void *picture, int x, int y)
     return !is_point(p) || v3_length(v3_sub(p, l->camera->eye)) >= FARTHEST;
 }
 
-static bool make_room(world_view *v, size_t most, error *e)
+static bool make_room(world_view *v, size_t most, bool albedo, error *e)
 {
     v->points = mem_pixels(most, 3 * sizeof *v->points, e);
     v->empty = v->points ? mem_pixels(most, 3 * sizeof *v->empty, e) : NULL;
-    return v->empty != NULL;
+    if (v->empty && albedo) v->albedo = mem_pixels(most, 3 * sizeof *v->albedo, e);
+    return v->empty && (v->albedo || !albedo);
 }
 
 static void put(float *list, size_t *count, vec3 p)
 {
     float *to = list + 3 * (*count)++;
     to[0] = (float)p.x, to[1] = (float)p.y, to[2] = (float)p.z;
+}
+
+static float as_albedo(float a) { return a > 0.0f ? fminf(a, 1.0f) : 0.0f; }
+
+// albedo: of its pixel, NULL without.
+static void put_point(world_view *v, vec3 p, const float *albedo)
+{
+    for (int k = 0; albedo && k < 3; k++) v->albedo[3 * v->point_count + (size_t)k] = as_albedo(albedo[k]);
+    put(v->points, &v->point_count, p);
 }
 
 static int stride_of(int width, int height, size_t most)
@@ -225,7 +235,7 @@ static void take_latlong(const latlong_picture *l, int stride, world_view *v)
             if (shows_nothing(latlong_empty, l, x, y))
                 put(v->empty, &v->empty_count, d);
             else if (!latlong_empty(l, x, y) && v3_dot(p, d) > ON_RAY * v3_length(p)) // else it was sampled past an edge
-                put(v->points, &v->point_count, v3_add(p, v->eye));
+                put_point(v, v3_add(p, v->eye), l->albedo ? l->albedo + 3 * ((size_t)y * (size_t)l->width + (size_t)x) : NULL);
         }
 }
 
@@ -249,7 +259,7 @@ static bool take_surface(const gbuffer *gb, int stride, world_view *v, error *e)
     return v->surface != NULL;
 }
 
-static void take_frame(const gbuffer *gb, int stride, world_view *v)
+static void take_seen(const gbuffer *gb, int stride, world_view *v)
 {
     const camera *c = &gb->camera;
     v->eye = c->origin, v->pixel = stride / c->fx;
@@ -257,7 +267,8 @@ static void take_frame(const gbuffer *gb, int stride, world_view *v)
         for (int x = stride / 2; x < gb->width; x += stride) {
             vec3 p = gbuffer_position(gb, x, y);
             if (p.z > 0.0) {
-                put(v->points, &v->point_count, v3_add(c->origin, m3_apply(c->world_from_camera, p)));
+                put_point(v, v3_add(c->origin, m3_apply(c->world_from_camera, p)),
+                          gb->albedo ? gb->albedo + 4 * ((size_t)y * (size_t)gb->width + (size_t)x) : NULL);
                 continue;
             }
             if (!shows_nothing(gbuffer_pixel_empty, gb, x, y)) continue;
@@ -266,23 +277,32 @@ static void take_frame(const gbuffer *gb, int stride, world_view *v)
         }
 }
 
+bool world_view_of_frame(const gbuffer *gb, size_t most, world_view *out, error *e)
+{
+    int stride = stride_of(gb->width, gb->height, most);
+    if (!make_room(out, most, gb->albedo != NULL, e)) return false;
+    take_seen(gb, stride, out);
+    return take_surface(gb, stride, out, e);
+}
+
 bool world_view_read(const exrio_file *file, const resolution *r, const gbuffer_options *options, size_t most, world_view *out,
                      log_t *log, error *e)
 {
     int width, height;
     latlong_camera c;
     gbuffer gb = {0};
-    float *positions = NULL;
+    float *positions = NULL, *albedo = NULL;
     bool ok = false;
     *out = (world_view){0};
     if (r->components[ROLE_POSITION] < 3)
         return err_set(e, ERR_INPUT, file->path, NULL,
                        "it has no position pass, which alone says where in the world its surfaces are");
-    positions = positions_of(file, r, &width, &height, e);
-    if (!positions || !make_room(out, most, e)) goto out;
-    int stride = stride_of(width, height, most);
+    positions = pass_of(file, r, ROLE_POSITION, &width, &height, e);
+    if (!positions) goto out;
     if (latlong_fit(positions, width, height, &c)) {
-        take_latlong(&(latlong_picture){positions, width, height, &c}, stride, out);
+        bool has_albedo = r->components[ROLE_ALBEDO] >= 3 && (albedo = pass_of(file, r, ROLE_ALBEDO, &width, &height, e));
+        if (!make_room(out, most, has_albedo, e)) goto out;
+        take_latlong(&(latlong_picture){positions, albedo, width, height, &c}, stride_of(width, height, most), out);
         log_info(log, "%s: a lat-long G-buffer, its eye at %.3g %.3g %.3g, %c up, %.2f pixels off in the median", file->path,
                  c.eye.x, c.eye.y, c.eye.z, c.up == 2 ? 'z' : 'y', c.error);
         ok = true;
@@ -296,18 +316,19 @@ bool world_view_read(const exrio_file *file, const resolution *r, const gbuffer_
             "seen");
         goto out;
     }
-    take_frame(&gb, stride, out);
-    ok = take_surface(&gb, stride, out, e);
+    ok = world_view_of_frame(&gb, most, out, e);
 out:
     if (!ok) world_view_free(out);
     gbuffer_free(&gb);
     free(positions);
+    free(albedo);
     return ok;
 }
 
 void world_view_free(world_view *v)
 {
     free(v->points);
+    free(v->albedo);
     free(v->empty);
     free(v->surface);
     *v = (world_view){0};

@@ -10,6 +10,7 @@ typedef struct world_view {
     bool latlong;
     double pixel;  // angle of a pixel, radians
     float *points; // x y z in world space; owned
+    float *albedo; // r g b of each point; NULL: the file has none. Owned
     size_t point_count;
     float *empty; // unit world directions in which the eye sees no surface; owned
     size_t empty_count;
@@ -20,11 +21,13 @@ typedef struct world_view {
     camera camera;
 } world_view;
 
-// From a file whose channels are loaded and resolved: position, and depth or normal where there are any. At most `most` pixels
-// are taken, evenly. ERR_INPUT where the file has no positions in world space or its camera cannot be found from them. Free with
-// world_view_free.
+// From a file whose channels are loaded and resolved: position, and depth, normal or albedo where there are any. At most `most`
+// pixels are taken, evenly. ERR_INPUT where the file has no positions in world space or its camera cannot be found from them.
+// Free with world_view_free.
 bool world_view_read(const exrio_file *file, const resolution *r, const gbuffer_options *options, size_t most, world_view *out,
                      log_t *log, error *e);
+// The same of a frame whose perspective camera is known in the world; `out` comes zeroed. False only for want of memory.
+bool world_view_of_frame(const gbuffer *gb, size_t most, world_view *out, error *e);
 void world_view_free(world_view *v);
 
 // Whether a pixel shows that there is nothing: it is part of an opening of at least 3 x 3 empty pixels. What is narrower may be a

@@ -11,7 +11,7 @@
 #include "gpu/internal.h"
 #include "gpu/shaders.h"
 
-enum { MAX_SOURCES = 24 };
+enum { MAX_SOURCES = 32 };
 
 // A growing text, and the files it was spliced from: GLSL's "#line n file" carries an index into `files`.
 typedef struct splice {

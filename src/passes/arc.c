@@ -8,7 +8,7 @@
 #include "passes/further.h"
 #include "passes/method.h"
 #include "passes/openings.h"
-#include "passes/surround.h"
+#include "passes/surround_image.h"
 
 static const float HUGE_LENGTH = 1e15f; // its square is still a float
 static const float KAPPA = 1.0f;        // a run is as thick as it is wide
@@ -56,7 +56,6 @@ arc_params arc_params_of_grid(const pass_context *c, int slices, int steps)
         .level = (float)s->env_level,
         .strength = (float)s->bounce_strength,
         .sun_openness = (float)s->outside.suns,
-        .views = c->view_count,
     };
     for (int i = 0; i < OPENNESS_COUNT; i++) p.openness[i / 4][i % 4] = (float)s->outside.share[i];
     params_put(p.walls_low, v3_sub(s->outside.low, s->upright_eye), 0);
@@ -64,6 +63,7 @@ arc_params arc_params_of_grid(const pass_context *c, int slices, int steps)
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) p.upright_from_camera[i][k] = (float)s->upright_from_camera.m[i][k];
     further_put(c, &p);
+    surround_image_put(c, &p);
     if (s->thickness_fixed) p.thin = p.thickness;
     arc_set_grid(&p, slices, steps);
     p.tolerance =
@@ -138,20 +138,6 @@ bool arc_has_surround(const pass_context *c) { return c->view_count > 0; }
 
 bool arc_closes_outside(const pass_context *c) { return !openness_is_whole(&c->set.outside) || arc_has_surround(c); }
 
-static bool make_surround(pass_context *c, error *e)
-{
-    gpu_image *to = &c->image[IMAGE_SURROUND];
-    if (!arc_has_surround(c) || to->id) return true;
-    int height = SURROUND_HEIGHT * c->view_count + 1;
-    float(*shell)[2] = mem_zero((size_t)SURROUND_WIDTH * (size_t)height, sizeof *shell, e);
-    mat3 map_from_camera = m3_mul(c->env ? c->env->map_from_world : m3_identity(), c->set.world_from_camera);
-    bool ok = shell && surround_make(c->views, c->view_count, c->gb, map_from_camera, c->threads, shell, e) &&
-              gpu_image_make(c->g, to, GL_RG32F, SURROUND_WIDTH, height, 1, e);
-    if (ok) gpu_image_upload(c->g, to, 0, shell[0]);
-    free(shell);
-    return ok;
-}
-
 static bool make_rim(pass_context *c, error *e)
 {
     gpu_image *to = &c->image[IMAGE_RIM];
@@ -197,7 +183,7 @@ static bool make_surface(pass_context *c, error *e)
 
 bool arc_make_inputs(pass_context *c, error *e) { return make_planes(c, e) && make_surface(c, e) && further_make(c, e); }
 
-bool arc_make_outside(pass_context *c, error *e) { return make_rim(c, e) && make_surround(c, e); }
+bool arc_make_outside(pass_context *c, error *e) { return make_rim(c, e) && (!arc_has_surround(c) || surround_image_make(c, e)); }
 
 // Bent normals after the rounds: as many slices as each tile came to. The occlusion that this march makes is not used.
 static bool run_bent(pass_context *c, const char *what, error *e)
@@ -273,7 +259,7 @@ static bool light_outside(pass_context *c, const arc_params *params, const gpu_i
         .writes = {{"outside_image", &c->image[IMAGE_OUTSIDE_LIGHT]}},
     };
     if (!arc_closes_outside(c)) return true;
-    if (!c->image[IMAGE_OUTSIDE_LIGHT].id && !gpu_image_make(c->g, &c->image[IMAGE_OUTSIDE_LIGHT], GL_RGBA32F, 1, 1, 1, e))
+    if (!c->image[IMAGE_OUTSIDE_LIGHT].id && !gpu_image_make(c->g, &c->image[IMAGE_OUTSIDE_LIGHT], GL_RGBA32F, 2, 1, 1, e))
         return false;
     return pass_run(c, &call, e);
 }
@@ -329,6 +315,7 @@ bool arc_run_light(pass_context *c, const arc_light *what, error *e)
     params.side = c->whole_side;
     if (sky && (!pass_split_suns(c, e) || !pass_make_image(c, IMAGE_RADIANCE, e))) return false;
     if (visibility && !pass_make_image(c, IMAGE_VISIBILITY, e)) return false;
+    if (bounce && !exitant && arc_has_surround(c) && !surround_image_light(c, e)) return false;
     if (bounce && (!light_planes(seen, &params, sender, albedo, e) || !light_outside(seen, &params, sender, albedo, e) ||
                    !make_senders(seen, sender, albedo, e) || !pass_make_image(c, IMAGE_INDIRECT, e)))
         return false;
@@ -354,7 +341,8 @@ bool arc_run_light(pass_context *c, const arc_light *what, error *e)
                   {"sender_image", sender},
                   {"outside_image", &seen->image[IMAGE_OUTSIDE_LIGHT]},
                   {"rim_image", &seen->image[IMAGE_RIM]},
-                  {"surround_image", &seen->image[IMAGE_SURROUND]},
+                  {"surround_image", &seen->surround->shell},
+                  {"surround_light_image", &seen->surround->light},
                   {"receiver_depth", &c->image[IMAGE_DEPTH]},
                   {"receiver_normal", &c->image[IMAGE_NORMAL]}},
         .writes = {{"visibility_image", &c->image[IMAGE_VISIBILITY]},
@@ -407,6 +395,7 @@ static const variant_row variants[] = {
     {.program = "suns", .pattern = "[OUTSIDE] [SURROUND]"},
     {.program = "suns_add", .pattern = "[VISIBILITY]"},
     {.program = "surface", .pattern = "[PLANES]"},
+    {.program = "surround_light", .pattern = ""},
     {0},
 };
 

@@ -60,8 +60,6 @@ IMAGE(HALF_DIFFERENCE, .name = "half-difference", .format = GL_R32F)
 IMAGE(PLANES, .name = "planes", .format = GL_RGBA32F)
 // Depth and normal in one texel, for the slice marches.
 IMAGE(SURFACE, .name = "surface", .format = GL_RG32UI)
-// What further G-buffers show around the eye, of a size of its own (surround.h).
-IMAGE(SURROUND, .name = "surround", .format = GL_RG32F)
 // The depth of the opening that a pixel shows the outdoors through; 0: it does not (openings.h).
 IMAGE(RIM, .name = "rim of openings", .format = GL_R32F)
 // The same with the light that surfaces send, for a bounce.
@@ -70,5 +68,5 @@ IMAGE(SENDERS, .name = "senders", .format = GL_RGBA32UI)
 IMAGE(SUNS, .name = "light of the suns", .format = GL_RGBA32F)
 // What is known of the radiance before it is made, for a march that makes it and its bounce at once (first_light.c).
 IMAGE(FIRST_LIGHT, .name = "first light", .format = GL_RGBA32F)
-// The light that surfaces outside the frame are taken to send: one texel.
+// The light that surfaces outside the frame are taken to send, and the mean albedo: two texels.
 IMAGE(OUTSIDE_LIGHT, .name = "light of the outside", .format = GL_RGBA32F)

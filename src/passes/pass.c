@@ -103,6 +103,7 @@ pass_context pass_like(const pass_context *c, const gbuffer *gb, const pass_sett
         .view_count = c->view_count,
         .further = c->further,
         .proxies = c->proxies,
+        .surround = c->surround,
         .sunless = c->sunless,
         .trace = c->trace,
     };

@@ -86,6 +86,20 @@ typedef struct pass_sunless {
     gpu_image map;     // id 0: there are no suns, the whole map serves
 } pass_sunless;
 
+// What further G-buffers show around their eyes, on the device: made by the first frame that looks there and kept for the batch
+// (passes/surround_image.h).
+typedef struct pass_surround {
+    bool ready;
+    mat3 map_from_world; // that the maps were made with
+    int count;           // of maps, one below the other in each picture
+    vec3 eye[MAX_FURTHER];
+    double known[MAX_FURTHER]; // the share of all directions
+    float *seen;               // of each map a coarse copy of its distances, for the choice; owned
+    gpu_image shell, albedo;
+    gpu_image light; // that what they show sends: id 0 until it is made
+    double lit_open; // how open what they do not show was then
+} pass_surround;
+
 enum { ROUNDS_LEAST_SAMPLES = 64, ROUNDS_MOST_SAMPLES = 2048 }; // of the first round; of all where nobody says
 
 // What --error has come to.
@@ -124,6 +138,7 @@ typedef struct pass_context {
     int view_count;
     gpu_image *further;        // borrowed, lives as long as the batch: further_make's
     const proxy_set *proxies;  // borrowed; NULL or empty: none
+    pass_surround *surround;   // borrowed, lives as long as the batch
     pass_sunless *sunless;     // borrowed, lives as long as the batch
     struct trace_scene *trace; // the same; for raytrace
 
@@ -135,6 +150,7 @@ typedef struct pass_context {
     bool hidden_found;
     plane_set planes; // found by the pass that uses them
     adaptive_sampling adaptive;
+    int maps[SURROUND_TRIES], map_count; // of the surround, that the frame's directions are looked up in
 
     GLuint frame_uniforms, params_uniforms;
     gpu_tiles tiles;

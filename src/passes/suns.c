@@ -105,7 +105,7 @@ static bool find_shadows(pass_context *c, arc_params params, error *e)
         PASS_PARAMS(params),
         .reads = {{"surface_image", &c->image[IMAGE_SURFACE]},
                   {"rim_image", &c->image[IMAGE_RIM]},
-                  {"surround_image", &c->image[IMAGE_SURROUND]}},
+                  {"surround_image", &c->surround->shell}},
         .writes = {{"sun_image", &c->image[IMAGE_SUNS]}},
     };
     return pass_make_image(c, IMAGE_SUNS, e) && pass_run(c, &march, e);

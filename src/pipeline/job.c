@@ -1,6 +1,7 @@
 #include "pipeline/job.h"
 
 #include "base/threads.h"
+#include "passes/surround_image.h"
 #include "plugin/colour.h"
 
 void job_open(job *j, const options *o, log_t *log)
@@ -27,6 +28,7 @@ static void forget(job_light *l)
 {
     gpu_image_free(&l->image);
     gpu_image_free(&l->sunless.map);
+    surround_image_free(&l->surround);
     if (l->loaded) environment_free(&l->env);
     *l = (job_light){0};
 }

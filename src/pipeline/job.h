@@ -24,6 +24,7 @@ typedef struct job_light {
     environment env;
     gpu_image image;
     pass_sunless sunless;
+    pass_surround surround;
 } job_light;
 
 // What lives for all frames of a run: options, context, environment.

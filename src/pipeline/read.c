@@ -212,7 +212,8 @@ static bool load_world_view(const job *j, exrio_file *file, const resolve_option
     bool ok = resolve_channels(file, ro, &r, j->log, e);
     for (int i = 0; ok && i < ROLE_COUNT; i++)
         for (int k = 0; k < r.components[i]; k++)
-            if ((i == ROLE_POSITION || i == ROLE_NORMAL || i == ROLE_DEPTH) && r.channels[i][k].part >= 0)
+            if ((i == ROLE_POSITION || i == ROLE_NORMAL || i == ROLE_DEPTH || (i == ROLE_ALBEDO && j->o->env)) &&
+                r.channels[i][k].part >= 0)
                 file->parts[r.channels[i][k].part].channels[r.channels[i][k].channel].wanted = true;
     return ok && exrio_file_load(file, j->threads, e) && world_view_read(file, &r, g, most, out, j->log, e);
 }

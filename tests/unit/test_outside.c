@@ -97,35 +97,53 @@ static void ground_is_outdoors(void **state)
     gbuffer_free(&gb);
 }
 
-// A crack in a further view, or in the frame, is no opening in the map either.
+// A crack in a further view is no opening in the map.
 static void cracks_are_no_openings(void **state)
 {
     (void)state;
-    enum { W = 64, H = 36, TEXELS = SURROUND_WIDTH * SURROUND_HEIGHT };
+    enum { W = 64, H = 36, TEXELS = SURROUND_SIDE * SURROUND_SIDE, COARSE = SURROUND_COARSE * SURROUND_COARSE };
     error e = {0};
     scene s = room(true, true);
     gbuffer gb;
-    static float map[TEXELS + SURROUND_WIDTH][2];
-    int openings[2] = {0};
+    static float shell[TEXELS][2], albedo[COARSE][4];
+    int openings[2] = {0}, map_of[MAX_FURTHER];
     look(&s, W, H, 60.0, &gb);
     for (int cracked = 0; cracked < 2; cracked++) {
-        world_view v = {.eye = gb.camera.origin};
+        world_view v = {0};
+        surround_map maps[MAX_FURTHER];
         for (int i = 0; cracked && i < 16; i++) gb.depth[30 * W + 8 + 3 * i] = 0.0f;
-        memset(map, 0, sizeof map);
-        must(surround_make(&v, 1, &gb, gb.camera.world_from_camera, 2, map, &e), &e);
-        for (int i = 0; i < TEXELS; i++) openings[cracked] += map[i][0] < 0.0f;
+        must(world_view_of_frame(&gb, (size_t)W * H, &v, &e), &e);
+        memset(shell, 0, sizeof shell);
+        assert_int_equal(surround_maps(&v, 1, map_of, maps), 1);
+        maps[0].shell = shell, maps[0].albedo = albedo;
+        must(surround_make(&v, 1, m3_identity(), 2, map_of, maps, 1, &e), &e);
+        for (int i = 0; i < TEXELS; i++) openings[cracked] += shell[i][0] < 0.0f;
+        world_view_free(&v);
     }
     assert_true(openings[0] > 0);
     assert_int_equal(openings[0], openings[1]);
     gbuffer_free(&gb);
 }
 
+// The texel of a direction has that direction, on both halves of the octahedron.
+static void texels_have_their_directions(void **state)
+{
+    (void)state;
+    enum { SIDE = 96 };
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        vec3 d = surround_direction(i % SIDE + 0.5, i / SIDE + 0.5, SIDE);
+        assert_true(fabs(v3_length(d) - 1.0) < 1e-12);
+        assert_int_equal(surround_texel(v3_scale(d, 3.0), SIDE), i);
+    }
+    assert_true(surround_direction(0.5 * SIDE, 0.5 * SIDE, SIDE).z == 1.0 && surround_direction(0, 0, SIDE).z == -1.0);
+}
+
 typedef struct light {
     double rms, ratio; // of the difference over the truth's rms; of the means
 } light;
 
-// A pixel in 7 x 7 against rays; with what further views show.
-static light light_of(const scene *s, double outside, const world_view *more)
+// A pixel in 7 x 7 against rays; with what further views show. layer: radiance or indirect.
+static light light_in(const scene *s, double outside, const world_view *more, layer_id layer)
 {
     enum { W = 160, H = 90, STEP = 7 };
     static rig r;
@@ -137,10 +155,10 @@ static light light_of(const scene *s, double outside, const world_view *more)
     pass_settings set = rig_settings(method_find("arc"), 0.5);
     set.thickness = 0.1, set.planes = true, set.blur = 4, set.outside = openness_even(outside);
     if (more) r.job.views[r.job.view_count++] = *more;
-    must(rig_run(&r, &gb, method_find("arc"), &set, 1 << LAYER_RADIANCE, &out, &e), &e);
+    must(rig_run(&r, &gb, method_find("arc"), &set, 1u << layer, &out, &e), &e);
     r.job.view_count = 0; // borrowed
     tracer t = scene_tracer(s);
-    truth_options o = {.rays = 1024, .offset = 1e-4}; // the points are rounded to floats
+    truth_options o = {.rays = layer == LAYER_RADIANCE ? 1024 : 256, .offset = 1e-4}; // the points are rounded to floats
     double se = 0, sx = 0, st = 0, stt = 0;
     for (int y = STEP / 2; y < H; y += STEP)
         for (int x = STEP / 2; x < W; x += STEP) {
@@ -149,13 +167,19 @@ static light light_of(const scene *s, double outside, const world_view *more)
             if (gb.depth[i] == 0.0f) continue;
             vec3 N = m3_apply(gb.camera.world_from_camera, v3((double)n[0], (double)n[1], (double)n[2]));
             vec3 P = v3_add(gb.camera.origin, m3_apply(gb.camera.world_from_camera, gbuffer_position(&gb, x, y)));
-            double want = truth_radiance(&t, P, N, &o).x, got = (double)out.layers[LAYER_RADIANCE][3 * i];
+            double want = layer == LAYER_RADIANCE ? truth_radiance(&t, P, N, &o).x : truth_indirect(&t, P, N, &o).x;
+            double got = (double)out.layers[layer][3 * i];
             se += (got - want) * (got - want), sx += got, st += want, stt += want * want;
         }
     rig_free_result(&out);
     gbuffer_free(&gb);
     rig_close(&r);
     return (light){sqrt(se / stt), sx / st};
+}
+
+static light light_of(const scene *s, double outside, const world_view *more)
+{
+    return light_in(s, outside, more, LAYER_RADIANCE);
 }
 
 static void light_comes_through_the_window(void **state)
@@ -205,6 +229,21 @@ static void another_view_shows_the_window(void **state)
     assert_true(without.rms == 1.0);
     assert_true(with.rms < 0.35);
     assert_true(fabs(with.ratio - 1.0) < 0.2);
+    world_view_free(&v);
+}
+
+// The same picture shows what is lit beside the window, behind the eye, too: the bounce comes from there.
+static void another_view_sends_light(void **state)
+{
+    (void)state;
+    scene s = room(true, true);
+    s.eye = v3(2, 4.6, 1.4), s.target = v3(1.8, 0, 1.1);
+    latlong_camera c = {.eye = v3(1.2, 2.2, 1.3), .up = 2, .start = 1.0, .sense = -1};
+    world_view v = view_around(&s, &c);
+    light got = light_in(&s, 0.0, &v, LAYER_INDIRECT);
+    printf("figure: its bounce: %.3f of the truth's rms (means %.2f)\n", got.rms, got.ratio);
+    assert_true(got.rms < 0.35);
+    assert_true(fabs(got.ratio - 1.0) < 0.2);
     world_view_free(&v);
 }
 
@@ -286,11 +325,13 @@ int main(void)
         cmocka_unit_test(openings),
         cmocka_unit_test(ground_is_outdoors),
         cmocka_unit_test(cracks_are_no_openings),
+        cmocka_unit_test(texels_have_their_directions),
         cmocka_unit_test(light_comes_through_the_window),
         cmocka_unit_test(a_closed_place_is_black),
         cmocka_unit_test(any_box_will_do),
         cmocka_unit_test(latlong_cameras_are_found),
         cmocka_unit_test(another_view_shows_the_window),
+        cmocka_unit_test(another_view_sends_light),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
