@@ -88,6 +88,7 @@ help:
 	@echo 'make bench-paper   cost of ssdo'\''s light and bounce beside the paper, of s3ho beside hemisphere'
 	@echo 'make bench-sampling   error by the sequence that slices, steps and sectors draw from, and by the spacing of steps'
 	@echo 'make bench-motion  noise over a shot and on flat patches (bench-motion-readme: into tests/bench/RESULTS.md)'
+	@echo 'make bench-shot    what pops in a rendered shot that a curtain leaves, without and with --surround shot'
 	@echo 'make bench-flat    what is left of the noise on flat patches of the samples (bench-flat-readme: into tests/bench/RESULTS.md)'
 	@echo 'make bench-front OLD=program   error against the cost of a whole job, beside an older program'
 	@echo 'make bench-frame   cost of a whole frame beside copying its file (bench-frame-readme: into tests/bench/RESULTS.md)'
@@ -287,7 +288,7 @@ $(LISTS): $(BUILD)/tests/limits/list_variants.o $(BUILD)/rooms.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(SANFLAGS) $(LDFLAGS) -o $@ $^ $(PKG_LIBS)
 # The benches are compiled, so that they still do.
-unit: $(UNIT) $(HARD) $(REPLAY) $(FAULT) $(LISTS) $(GPU_TOOLS) $(BUILD)/tests/bench/motion $(BUILD)/tests/bench/score $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/bench/*.c))
+unit: $(UNIT) $(HARD) $(REPLAY) $(FAULT) $(LISTS) $(GPU_TOOLS) $(BUILD)/tests/bench/motion $(BUILD)/tests/bench/score $(BUILD)/tests/bench/follow $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/bench/*.c))
 
 # Real schedulers on this machine (tests/farm/check.sh); what it starts, it stops.
 .PHONY: check-farm
@@ -376,6 +377,17 @@ bench-covered: deps-bench
 $(BENCH_CACHE)/covered/%/rendered:
 	@mkdir -p $(@D) && cp samples/sky_*.exr $(@D)
 	blender -b --factory-startup -P samples/render.py -- --covered --out $(@D) --variant $* --spp $(UNSEEN_SPP) >$(@D)/log
+	@touch $@
+
+# A rendered shot that a curtain leaves, rendered once (12 minutes).
+.PHONY: bench-shot
+bench-shot: deps-bench
+	@$(MAKE) $(JOBS) --no-print-directory all $(BUILD)/tests/bench/follow $(BENCH_CACHE)/shot/rendered
+	@sh tests/bench/shot.sh $(BUILD) $(BENCH_CACHE)/shot $(BUILD)/shot $(OPTIONS)
+
+$(BENCH_CACHE)/shot/rendered:
+	@mkdir -p $(@D)
+	blender -b --factory-startup -P samples/render.py -- --scene drape --shot 8 --pan 2 --out $(@D) --size 240x135 >$(@D)/log
 	@touch $@
 
 # The tables and the plot of the last bench and bench-unseen, pasted into tests/bench/RESULTS.md.
