@@ -10,6 +10,7 @@
 // ACROSS: the first direction; it stores the means along rows. ERRORS: also stores the squared error of the result, estimated from the
 // noise that is left and the detail that is lost.
 #include "include/frame.glsl"
+#define MIXED_APART
 #include "include/bilateral.glsl"
 
 #define SCALARS 0

@@ -85,6 +85,13 @@ static bool open_frame(build *b)
     return g->depth && g->normal && b->surface;
 }
 
+static bool prepare_lengths(build *b)
+{
+    if (!filtered_asked(b) && !mixed_asked(b)) return true;
+    b->normal.lengths = mem_pixels((size_t)b->g->width * (size_t)b->g->height, 1, b->e);
+    return b->normal.lengths != NULL;
+}
+
 static bool summarise(build *b)
 {
     gbuffer *g = b->g;
@@ -116,11 +123,11 @@ bool gbuffer_build(const exrio_file *file, const resolution *r, const gbuffer_op
     *out = (gbuffer){0};
     build b = {.file = file, .r = r, .options = options, .g = out, .log = log, .e = e, .row = convention_named(r->convention)};
     bool done = open_frame(&b) && depth_open(&b) && validity_find(&b) && choose_camera(&b) && orthographic_settle(&b) &&
-                depth_settle(&b) && positions_raw(&b) && measure_normals(&b) && damage_warn(&b) && filtered_prepare(&b);
+                depth_settle(&b) && positions_raw(&b) && measure_normals(&b) && damage_warn(&b) && prepare_lengths(&b);
     if (done) {
         positions_final(&b);
         normals_make(&b);
-        done = filtered_mend(&b) && albedo_make(&b) && coverage_make(&b) && colours_make(&b) && summarise(&b);
+        done = filtered_mend(&b) && albedo_make(&b) && coverage_make(&b) && mixed_make(&b) && colours_make(&b) && summarise(&b);
     }
     free(b.surface);
     free(b.position.raw);
@@ -142,6 +149,8 @@ void gbuffer_free(gbuffer *g)
 {
     float *arrays[] = {g->depth, g->normal, g->albedo, g->beauty, g->material, g->emission, g->diffuse_direct, g->coverage};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
+    free(g->mixed);
+    g->mixed = NULL, g->mixed_count = 0;
     g->depth = g->normal = g->albedo = g->beauty = g->material = g->emission = g->diffuse_direct = g->coverage = NULL;
 }
 

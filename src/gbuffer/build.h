@@ -201,10 +201,15 @@ double normals_length(const build *b, int x, int y);
 vec3 normals_from_depth(const build *b, const float *depth, int x, int y);
 void normals_make(build *b);
 
-// filtered.c: asks for what filtered_mend needs of normals_make, and gives the pixels that a filter mixed one surface, after
-// depth and normals are made.
-bool filtered_prepare(build *b);
+// filtered.c: gives the pixels whose depth a filter mixed one surface, after depth and normals are made. Where it is asked, it
+// needs the lengths of the normals.
+bool filtered_asked(const build *b);
 bool filtered_mend(build *b);
+
+// mixed.c: where the normals alone are means, gives each pixel its own surface's normal and finds gbuffer.mixed. After the
+// coverage, which decides whether alpha tells anything. Where it is asked, it needs the lengths of the normals.
+bool mixed_asked(const build *b);
+bool mixed_make(build *b);
 
 // defects.c: one warning for each kind of sample that could not be used, if it touches more than a thousandth of the pixels.
 void defects_warn(build *b);

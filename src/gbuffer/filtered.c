@@ -172,22 +172,15 @@ static void describe(repair *r)
     r->lengths = lengths_are_whole(b);
 }
 
-static bool is_filtered(const build *b)
+bool filtered_asked(const build *b)
 {
     role depth = b->position.has_p && !b->position.z_wins ? ROLE_POSITION : ROLE_DEPTH;
     return b->filtered & 1u << depth;
 }
 
-bool filtered_prepare(build *b)
-{
-    if (!is_filtered(b)) return true;
-    b->normal.lengths = mem_pixels((size_t)b->g->width * (size_t)b->g->height, 1, b->e);
-    return b->normal.lengths != NULL;
-}
-
 bool filtered_mend(build *b)
 {
-    if (!is_filtered(b)) return true;
+    if (!filtered_asked(b)) return true;
     size_t total = (size_t)b->g->width * (size_t)b->g->height, blocks = total / BLOCK + 1;
     repair r = {.b = b,
                 .state = b->normal.lengths,

@@ -9,6 +9,8 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include <stdint.h>
+
 #include "gbuffer/camera.h"
 #include "gbuffer/encoding.h"
 #include "gbuffer/resolve.h"
@@ -35,19 +37,29 @@ typedef struct gbuffer_options {
     int threads;
 } gbuffer_options;
 
+// A pixel of which a neighbour's surface covers a part.
+typedef struct mixed_pixel {
+    uint32_t pixel; // x | y << 16
+    int8_t x, y;    // to the neighbour, -1 to 1
+    float share;    // of the pixel that is the neighbour's surface, above 0 to 1
+} mixed_pixel;
+
 typedef struct gbuffer {
     int width, height;
     box2 data_window, display_window;
     double pixel_aspect;
     camera camera;
-    float *depth;          // planar depth z in camera space, > 0; exactly 0 where there is no surface
-    float *normal;         // 4 a pixel: unit camera-space normal, w = 0; all 0 where there is no surface, but see Coverage below
-    float *albedo;         // 4 a pixel: r g b as stored (Blender: coverage-premultiplied), w = 0; NULL if absent or not needed
-    float *beauty;         // 4 a pixel: r g b, A (1 if absent); NULL
-    float *material;       // 2 a pixel: roughness, metallic; NULL
-    float *emission;       // 4 a pixel; NULL
+    float *depth;    // planar depth z in camera space, > 0; exactly 0 where there is no surface
+    float *normal;   // 4 a pixel: unit camera-space normal, w = 0; all 0 where there is no surface, but see Coverage and Mixed
+                     // pixels below
+    float *albedo;   // 4 a pixel: r g b as stored (Blender: coverage-premultiplied), w = 0; NULL if absent or not needed
+    float *beauty;   // 4 a pixel: r g b, A (1 if absent); NULL
+    float *material; // 2 a pixel: roughness, metallic; NULL
+    float *emission; // 4 a pixel; NULL
     float *diffuse_direct; // 4 a pixel; NULL
     float *coverage;       // k of src/gbuffer/README.md, Coverage, 0..1: 1 inside surfaces; NULL unless needed
+    mixed_pixel *mixed;    // row by row, where the renderer averages normals; see Mixed pixels below
+    size_t mixed_count;
     bool has_diffuse_indirect, has_alpha;
     bool normals_from_depth, depth_from_position;
     depth_kind depth_kind; // as measured
@@ -69,6 +81,12 @@ typedef struct gbuffer {
 //   0 < dot(n, ray) <= 0.1                                        and they are more than 120 degrees apart.
 // All other normals are kept. So an interpolated or bumped normal may face away a little, or more where it agrees with the
 // depths.
+//
+// Mixed pixels. A renderer may store the mean of all normals in a pixel beside the depth of one sample (Blender does). Such a
+// mean is shorter than 1. A pixel whose mean is shorter than .98 takes the normal of a neighbour (of the 3 x 3) on whose tangent
+// plane it lies, if that normal is nearer to unit length. If its own normal and one neighbour's, by shares that add up to 1, then
+// come nearer to the mean than its own alone, it is listed in `mixed`. The fourth number of its normal is the mean's length - 1
+// (below 0). Near the background, alpha must tell how much of the pixel is covered.
 //
 // Coverage is 1, except within one pixel (3 x 3) of the background. There it is the first of these that the file allows:
 //   alpha, if alpha varies over the picture;

@@ -138,6 +138,7 @@ bool gbuffer_halve(const gbuffer *g, int threads, gbuffer *out, error *e)
     out->camera.fx *= 0.5, out->camera.fy *= 0.5, out->camera.cx *= 0.5, out->camera.cy *= 0.5;
     out->depth = out->normal = out->albedo = out->beauty = NULL;
     out->material = out->emission = out->diffuse_direct = out->coverage = NULL;
+    out->mixed = NULL, out->mixed_count = 0;
     size_t pixels = (size_t)out->width * (size_t)out->height;
     halving h = {g, out, mem_zero((size_t)out->height, sizeof *h.valid, e)};
     bool ok = h.valid && (out->depth = mem_zero(pixels, sizeof(float), e)) &&

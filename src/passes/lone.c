@@ -9,12 +9,9 @@ enum { GROUP = GROUP_SIDE * GROUP_SIDE, BATCH = 128 * GROUP };
 static const float SHARPNESS = 1.0f;
 
 // Batches stop soon when the job is stopped.
-static bool run_over(pass_context *c, size_t count, const gpu_buffer *lone, pass_call call, error *e)
+bool pass_run_list(pass_context *c, size_t count, pass_call call, error *e)
 {
     call.untimed = true;
-    int free_place = 0;
-    while (call.buffers[free_place].name) free_place++;
-    call.buffers[free_place] = (pass_store){"Lone", lone};
     for (size_t first = 0; first < count && !(c->stop && *c->stop); first += BATCH) {
         size_t end = first + BATCH < count ? first + BATCH : count;
         call.groups[0] = (int)((end - first + GROUP - 1) / GROUP), call.groups[1] = 1;
@@ -22,6 +19,14 @@ static bool run_over(pass_context *c, size_t count, const gpu_buffer *lone, pass
         if (!pass_run(c, &call, e)) return false;
     }
     return true;
+}
+
+static bool run_over(pass_context *c, size_t count, const gpu_buffer *lone, pass_call call, error *e)
+{
+    int free_place = 0;
+    while (call.buffers[free_place].name) free_place++;
+    call.buffers[free_place] = (pass_store){"Lone", lone};
+    return pass_run_list(c, count, call, e);
 }
 
 static bool filter(pass_context *c, size_t count, const gpu_buffer *lone, const gpu_image *scalar, const gpu_image *colour,

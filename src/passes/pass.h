@@ -217,6 +217,10 @@ typedef struct pass_call {
 // see its result.
 bool pass_run(pass_context *c, const pass_call *call, error *e);
 
+// Runs a shader over a list of `count` items that one of its buffers holds, a thread for each; `tile` says which. The caller
+// times it.
+bool pass_run_list(pass_context *c, size_t count, pass_call call, error *e);
+
 // Times a pass that runs several shaders: pass_clock_stop adds the time since pass_clock to the timings.
 pass_timing pass_clock(const pass_context *c, const char *name);
 void pass_clock_stop(pass_context *c, pass_timing since);
@@ -264,6 +268,8 @@ bool pass_proxies(pass_context *c, error *e);                 // occlusion, visi
 bool pass_proxies_bounce(pass_context *c, error *e);          // indirect: in place
 bool pass_tone(pass_context *c, gpu_image *scalar, error *e); // scale and contrast, in place
 bool pass_irradiance(pass_context *c, error *e);              // occlusion -> radiance
+bool pass_mix(pass_context *c, error *e);                     // the layers of gbuffer.mixed, which is not empty: in place
+image_set pass_mix_takes(image_set there);                    // those of them that pass_mix mixes
 bool pass_edges(pass_context *c, error *e);                   // fills the layers of partly covered pixels
 bool pass_specular(pass_context *c, error *e);                // material, albedo -> specular, diffuse_share
 bool pass_composite(pass_context *c, error *e);               // layers -> composite

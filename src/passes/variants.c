@@ -27,6 +27,7 @@ static const variant_row shared[] = {
     {"edges", "OCCLUSION [BENT] [VISIBILITY] [RADIANCE] [INDIRECT] | SH [BANDS3]", false, false},
     {"irradiance", "", false, false},
     {"lone_blur", "[VISIBILITY] [SCATTER]", false, false},
+    {"mix", "[SCATTER] | COLOUR [SCATTER] | COLOUR LIGHT", false, false},
     {"tone", "", false, false},
     {"proxies", "OCCLUSION [VECTOR] [BENT] [VISIBILITY] [RADIANCE] | SH [BANDS3] | BOUNCE", false, false},
     {"root", "", true, false},

@@ -132,7 +132,7 @@ void filter_list(const frame_result *r, bool suns, step_list *out)
     bool uncovered = r->prepared ? r->uncovered : !needs_coverage(&r->gb);
     if (uncovered) given &= ~IMAGE_BIT(IMAGE_COVERAGE);
     bool lone = !r->prepared || r->lone.count > 0;
-    steps_make(&(step_facts){&r->plan, &r->set, given, r->proxies.count > 0, suns, lone}, out);
+    steps_make(&(step_facts){&r->plan, &r->set, given, r->proxies.count > 0, suns, r->gb.mixed_count > 0, lone}, out);
 }
 
 static bool list_steps(const job *j, pass_context *c, frame_result *r, error *e)
@@ -179,7 +179,7 @@ bool filter_estimate(job *j, const gbuffer *gb, job_light *light, const plan *p,
     step_list list;
     bool ok = !steps_split_suns(p) || pass_split_suns(&c, e);
     if (ok) {
-        steps_make(&(step_facts){p, set, steps_given(gb), false, c.sunless->map.id != 0, false}, &list);
+        steps_make(&(step_facts){p, set, steps_given(gb), false, c.sunless->map.id != 0, gb->mixed_count > 0, false}, &list);
         ok = run_steps(&c, gb, &list, p->method->run_light != NULL, e) && gpu_finish(&j->g, "the passes", e);
     }
     size_t n = (size_t)gb->width * (size_t)gb->height;

@@ -3,16 +3,18 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "gbuffer/conventions.h"
 #include "gbuffer/gbuffer.h"
 
 typedef struct inputs {
-    bool env, albedo, beauty, roughness, emission, diffuse_direct, diffuse_indirect;
+    bool env, averaged, albedo, beauty, roughness, emission, diffuse_direct, diffuse_indirect;
 } inputs;
 
 static inputs inputs_of(const options *o, const resolution *r)
 {
     return (inputs){
         .env = o->env != NULL,
+        .averaged = convention_named(r->convention)->normals_averaged,
         .albedo = r->components[ROLE_ALBEDO] > 0,
         .beauty = r->components[ROLE_BEAUTY] > 0,
         .roughness = r->components[ROLE_ROUGHNESS] > 0,
@@ -170,7 +172,8 @@ bool plan_make(const options *o, const exrio_file *file, const resolution *r, pl
     p->depthmask = asked(p, LAYER_DEPTHMASK) || (p->composite && o->depthmask_strength > 0.0);
 
     p->need = NEED_COVERAGE;
-    if (in.albedo && (p->bounce || p->composite)) p->need |= NEED_ALBEDO;
+    // Where a pixel holds two surfaces, their light is mixed by what each reflects.
+    if (in.albedo && (p->bounce || p->composite || (light && in.averaged))) p->need |= NEED_ALBEDO;
     if (in.beauty && !p->relight && (p->composite || p->bounce)) p->need |= NEED_BEAUTY;
     if (in.beauty && p->relight && p->composite) p->need |= NEED_BACKGROUND;
     if (p->specular) p->need |= NEED_MATERIAL;

@@ -353,6 +353,14 @@ static void add_rest(builder *b)
                            .run = run_pass,
                            .call = pass_proxies_bounce});
     image_set filled = of_groups(b->whole, IMAGE_FILLED | IMAGE_VECTOR);
+    image_set mixed = pass_mix_takes(b->whole);
+    if (f->mixed)
+        add(b, (plan_step){.pass = "mix",
+                           .why = "pixels whose normal is a mean of two surfaces'",
+                           .reads = mixed,
+                           .writes = mixed,
+                           .run = run_pass,
+                           .call = pass_mix});
     if (to_fill(f))
         add(b, (plan_step){.pass = "edges",
                            .why = "partly covered pixels",
@@ -405,6 +413,7 @@ static void list_missing(const step_facts *f, step_list *l)
     add_missing(l, "refine", "no light is made at half size, or it shows the surface of every pixel");
     add_missing(l, "upsample", "all is made at full size");
     add_missing(l, "downsample", "nothing at half size needs what is made at full size");
+    add_missing(l, "mix", "no pixel has a mean of two surfaces' normals that tells how much of each it holds");
     add_missing(l, "edges", "every pixel with a share of a surface has one recorded");
     add_missing(l, "specular", p->why_no_specular);
     for (int i = 0; i < LAYER_COUNT; i++)

@@ -39,6 +39,7 @@ typedef struct step_facts {
     image_set given; // by the G-buffer
     bool proxies;    // there are spheres
     bool suns;       // the environment has suns, which have been taken out of it
+    bool mixed;      // in some pixels a neighbour's surface covers a part
     bool lone;       // some pixels have a surface that the frame of half the size does not show
 } step_facts;
 

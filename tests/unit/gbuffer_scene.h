@@ -166,7 +166,7 @@ static inline void compare(const gbuffer *g, double *depth_off, double *normal_o
         if (g->depth[i] > 0 && true_depth[i] > 0) base = offset_of(g, i);
     for (size_t i = 0; i < N; i++) {
         const float *n = g->normal + 4 * i;
-        assert_true(isfinite(g->depth[i]) && g->depth[i] >= 0 && n[3] == 0);
+        assert_true(isfinite(g->depth[i]) && g->depth[i] >= 0 && n[3] <= 0 && n[3] > -1);
         if (!(g->depth[i] > 0) || !(true_depth[i] > 0)) continue;
         surfaces++;
         bad_depth += fabs(((double)g->depth[i] - base) / true_depth[i] - 1) > depth_tolerance;
@@ -184,7 +184,10 @@ static inline void assert_exact(const gbuffer *g, double tolerance)
     double d, n;
     compare(g, &d, &n, tolerance, 1e-3);
     assert_true(d == 0 && n == 0);
-    for (size_t i = 0; i < N; i++) assert_int_equal(g->depth[i] > 0, true_depth[i] > 0);
+    for (size_t i = 0; i < N; i++) {
+        assert_int_equal(g->depth[i] > 0, true_depth[i] > 0);
+        assert_true(g->normal[4 * i + 3] == 0);
+    }
 }
 
 #endif

@@ -149,16 +149,17 @@ static void steps_follow(const plan *p, const options *o)
         for (int more = 0; more < 8; more++) {
             pass_settings set = settings_for(p, o);
             step_list l;
-            bool proxies = more & 1, lone = more & 4, suns = more & 2 && steps_split_suns(p);
+            bool proxies = more & 1, lone = more & 4, mixed = more & 2, suns = more & 2 && steps_split_suns(p);
             set.size = o->error <= 0.0 && !p->from_sh ? (estimate_size)size : SIZE_FULL;
             if (more & 4) set.samples *= 16;
             image_set given = given_by(p);
-            const step_facts facts = {p, &set, given, proxies, suns, lone};
+            const step_facts facts = {p, &set, given, proxies, suns, mixed, lone};
             steps_make(&facts, &l);
             pictures_flow(p, &l, &set, given);
             assert_true(step_named(&l, p->method->name)->runs);
             assert_int_equal(step_named(&l, "irradiance")->runs, p->irradiance);
             assert_int_equal(step_named(&l, "tone")->runs, p->tone);
+            assert_int_equal(step_named(&l, "mix")->runs, mixed);
             assert_int_equal(step_named(&l, "bounce")->runs, p->bounce && !steps_bounce_within(&facts));
             assert_int_equal(step_named(&l, "specular")->runs, p->specular);
             assert_int_equal(step_named(&l, "depthmask")->runs, p->depthmask);
@@ -256,9 +257,9 @@ static void every_set_of_layers_flows(void **state)
                 if (!layers[0] || !planned(&o, inputs, &p, &e)) continue;
                 pass_settings s = settings_for(&p, &o);
                 step_list l;
-                steps_make(
-                    &(step_facts){&p, &s, given_by(&p), lists % 7 == 0, lists % 4 == 0 && steps_split_suns(&p), lists % 5 == 0},
-                    &l);
+                steps_make(&(step_facts){&p, &s, given_by(&p), lists % 7 == 0, lists % 4 == 0 && steps_split_suns(&p),
+                                         lists % 3 == 0, lists % 5 == 0},
+                           &l);
                 pictures_flow(&p, &l, &s, given_by(&p));
                 lists++;
             }
