@@ -2,9 +2,9 @@
 // of a surface and the background's zeros; a filter with negative lobes leaves values beyond either. Such a pixel is given one
 // surface again.
 //
-// Each mixed pixel is explained as a mean of two of the sides around it. A clean pixel tells what each side is. With a symmetric
-// filter, the pixel's centre belongs to the side with the larger share. The nearer side's normal turns at round outlines, so it
-// is computed: the stored normal minus the farther side's share.
+// Each mixed pixel is explained as a mean of two of the sides around it, or of three. A clean pixel tells what each side is. With
+// a symmetric filter, the pixel's centre belongs to the side with the larger share. The nearer side's normal turns at round
+// outlines, so it is computed: the stored normal minus the farther side's share.
 #include "gbuffer/filtered.h"
 
 #include <stdlib.h>
@@ -14,18 +14,6 @@
 enum { BLOCK = 4096 };
 static const double odd_length = 0.01; // of a normal: of one surface alone it keeps its length
 static const double most_rest = 0.1;   // of a pixel's values that two surfaces do not explain, squared
-
-// What a mixed pixel becomes.
-typedef struct mended {
-    size_t pixel;
-    float z;
-    vec3 n;
-} mended;
-
-typedef struct mended_list {
-    mended *items;
-    size_t count, room;
-} mended_list;
 
 static double per_depth(const repair *r, int x, int y) { return r->radial ? v3_length(build_ray(&r->b->g->camera, x, y)) : 1.0; }
 
@@ -62,7 +50,7 @@ stored filtered_read(const repair *r, int x, int y)
     return s;
 }
 
-const stored *filtered_at(repair *r, int x, int y)
+stored *filtered_at(repair *r, int x, int y)
 {
     int *place = &r->place[build_index(r->b, x, y)];
     if (*place == 0) {
@@ -83,23 +71,26 @@ vec3 filtered_place(const repair *r, const stored *s, int x, int y)
     return r->b->position.has_p ? s->p : build_point(&r->b->g->camera, x, y, filtered_depth(r, s->p, x, y));
 }
 
-static bool mend(repair *r, mended_list *list, int x, int y)
+size_t filtered_clean_of(const repair *r, const side *s) { return s->z > 0.0 ? build_index(r->b, s->u, s->v) : NO_PIXEL; }
+
+void filtered_take(repair *r, const stored *s, const mixture *m, mended *out)
+{
+    const size_t width = (size_t)r->b->g->width;
+    double z;
+    if (!(m->rest <= most_rest)) return;
+    out->settled = filtered_settle(r, s, m, (int)(out->pixel % width), (int)(out->pixel / width), &z, &out->n);
+    out->z = (float)z, out->rest = m->rest;
+    out->near = filtered_clean_of(r, m->near), out->far = filtered_clean_of(r, m->far);
+}
+
+static mended mend(repair *r, int x, int y)
 {
     side sides[SIDES];
     const stored *s = filtered_at(r, x, y);
-    mixture m = filtered_mixture(r, s, sides, filtered_sides(r, x, y, sides));
-    if (!(m.rest <= most_rest)) return true; // more than two surfaces, or a detail that no clean pixel shows
-    if (list->count == list->room) {
-        size_t room = 2 * list->room + BLOCK;
-        mended *grown = mem_grow(list->items, room, sizeof *grown, r->b->e);
-        if (!grown) return false;
-        list->items = grown, list->room = room;
-    }
-    double z;
-    mended *out = &list->items[list->count++];
-    filtered_settle(r, s, &m, x, y, &z, &out->n);
-    out->pixel = build_index(r->b, x, y), out->z = (float)z;
-    return true;
+    mixture m = filtered_mixture(r, s, sides, 0, filtered_sides(r, x, y, sides));
+    mended out = {.pixel = build_index(r->b, x, y), .near = NO_PIXEL, .far = NO_PIXEL, .rest = m.rest};
+    filtered_take(r, s, &m, &out);
+    return out;
 }
 
 // What a pixel of the background stores, well away from surfaces: encoded normals are not 0 there.
@@ -127,32 +118,42 @@ static bool lengths_are_whole(const build *b)
     return b->normal.there && 2 * whole > b->sample.count;
 }
 
-static void put(build *b, const mended_list *list)
+// How many pixels were changed.
+static size_t put(build *b, const mended_list *list)
 {
+    size_t count = 0;
     for (const mended *m = list->items; m < list->items + list->count; m++) {
+        if (!(m->rest <= most_rest)) continue; // more than three surfaces, or a detail that no clean pixel shows
         float *depth = &b->g->depth[m->pixel], *normal = b->g->normal + 4 * m->pixel;
         const vec3 n = m->z > 0.0f ? v3_normalize(m->n) : v3(0, 0, 0);
         b->g->valid -= *depth > 0.0f;
         *depth = m->z, normal[0] = (float)n.x, normal[1] = (float)n.y, normal[2] = (float)n.z;
         b->g->valid += *depth > 0.0f;
+        count++;
     }
+    return count;
 }
 
 static bool mend_all(repair *r)
 {
     build *b = r->b;
     mended_list list = {0};
-    bool ok = filtered_find_clean(r);
+    bool ok = filtered_find_clean(r) && (list.items = mem_pixels(r->mixed_count, sizeof *list.items, b->e)) != NULL;
     if (ok) filtered_measure(r);
     for (size_t k = 0; ok && k < r->mixed_count; k++) {
         const size_t i = r->mixed[k], width = (size_t)b->g->width;
-        ok = mend(r, &list, (int)(i % width), (int)(i / width)) && !r->failed;
+        const int x = (int)(i % width), y = (int)(i / width);
+        list.items[list.count++] = mend(r, x, y);
+        filtered_at(r, x, y)->mended = (int)list.count;
+        ok = !r->failed;
     }
+    if (ok) filtered_again(r, &list);
+    ok = ok && !r->failed;
     if (ok) {
-        put(b, &list);
+        const size_t count = put(b, &list);
         if (!b->normal.there) normals_make(b);  // of the mended depths; the lengths are no longer needed
         atomic_store(&b->defects.positions, 0); // they are among the mended
-        build_note(b, "%zu pixels of filtered passes lie between surfaces and were given to the nearest one", list.count);
+        build_note(b, "%zu pixels of filtered passes lie between surfaces and were given to the nearest one", count);
     }
     free(list.items);
     return ok;

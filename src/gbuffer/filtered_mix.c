@@ -30,8 +30,7 @@ static bool transparent(const repair *r, int u, int v)
     return !(r->b->g->depth[i] > 0.0f) || (r->b->alpha.data && !(plane_get(&r->b->alpha, u, v) >= 0.5));
 }
 
-// Adds the clean pixel (u, v), a step or more away. Of one plane's pixels the nearest counts.
-static int add_side(repair *r, int x, int y, int u, int v, side list[SIDES], int count)
+int filtered_add_side(repair *r, int x, int y, int u, int v, side *list, int count)
 {
     const stored *at = filtered_at(r, u, v);
     side s = {.code = at->code, .n = at->n, .alpha = 1.0, .u = u, .v = v};
@@ -49,6 +48,8 @@ static int add_side(repair *r, int x, int y, int u, int v, side list[SIDES], int
     return count + 1;
 }
 
+side filtered_background(const repair *r) { return (side){.p = r->nothing.p, .code = r->nothing.code, .n = r->nothing.n}; }
+
 int filtered_sides(repair *r, int x, int y, side list[SIDES])
 {
     const int(*step)[2] = filtered_step;
@@ -60,10 +61,10 @@ int filtered_sides(repair *r, int x, int y, side list[SIDES])
             if (!filtered_inside(r->b, u, v)) break;
             open = open || transparent(r, u, v);
             if (!filtered_clean(r, u, v)) continue;
-            count = add_side(r, x, y, u, v, list, count);
+            count = filtered_add_side(r, x, y, u, v, list, count);
             break;
         }
-    if (open && count > 0) list[count++] = (side){.p = r->nothing.p, .code = r->nothing.code, .n = r->nothing.n};
+    if (open && count > 0) list[count++] = filtered_background(r);
     return count;
 }
 
@@ -88,63 +89,55 @@ double filtered_share(const repair *r, const stored *s, const side *far)
     return share;
 }
 
-// How much what is stored differs, squared: depth in steps of `scale`, normals and alpha.
-typedef struct difference {
-    vec3 p, code;
-    double alpha;
-} difference;
-
-typedef struct weights {
-    double p, code, alpha; // of squares
-} weights;
-
-static inline difference minus(vec3 p, vec3 code, double alpha, const side *b)
+metric filtered_metric(const repair *r, const side *near)
 {
-    return (difference){v3_sub(p, b->p), v3_sub(code, b->code), alpha - b->alpha};
+    const double scale = r->inverse ? step_of_depth / near->z : step_of_depth * near->z;
+    return (metric){1.0 / (scale * scale), r->b->normal.encoding == NORMAL_SIGNED ? 1.0 : 4.0, r->b->alpha.data ? 4.0 : 0.0};
 }
 
-static inline double dot(const weights *w, const difference *a, const difference *b)
-{
-    return w->p * v3_dot(a->p, b->p) + w->code * v3_dot(a->code, b->code) + w->alpha * a->alpha * b->alpha;
-}
-
-static mixture mix(const repair *r, const stored *s, const side *near, const side *far, bool turns)
+// `turned`: the share by the normal's length, NULL if the near side's is as it is. rest stays INFINITY where it would not be less
+// than `most`.
+static mixture mix(const repair *r, const stored *s, const side *near, const side *far, const double *turned, double most)
 {
     mixture m = {.near = near, .far = far, .n = near->n, .rest = INFINITY};
-    const double scale = r->inverse ? step_of_depth / near->z : step_of_depth * near->z;
-    weights w = {1.0 / (scale * scale), r->b->normal.encoding == NORMAL_SIGNED ? 1.0 : 4.0, r->b->alpha.data ? 4.0 : 0.0};
-    const difference at = minus(s->p, s->code, s->alpha, near), way = minus(far->p, far->code, far->alpha, near);
+    const metric w = filtered_metric(r, near);
+    const difference at = filtered_minus(s->p, s->code, s->alpha, near),
+                     way = filtered_minus(far->p, far->code, far->alpha, near);
     if (far->alpha < 1.0 && r->b->alpha.data) {
         m.share = 1.0 - s->alpha;
-    } else if (turns) {
-        m.share = filtered_share(r, s, far);
+    } else if (turned) {
+        m.share = *turned;
     } else {
-        double d2 = dot(&w, &way, &way);
-        m.share = d2 > 1e-4 ? dot(&w, &at, &way) / d2 : 0.0;
+        double d2 = filtered_dot(&w, &way, &way);
+        m.share = d2 > 1e-4 ? filtered_dot(&w, &at, &way) / d2 : 0.0;
     }
-    if (!(m.share > -0.3 && m.share < (turns ? 0.8 : 1.3))) return m;
-    m.rest = 0.0;
-    if (turns) {
+    if (!(m.share > -0.3 && m.share < (turned ? 0.8 : 1.3))) return m;
+    const vec3 off = v3_sub(at.p, v3_scale(way.p, m.share)), code = v3_sub(at.code, v3_scale(way.code, m.share));
+    const double alpha = at.alpha - way.alpha * m.share, rest = w.p * v3_dot(off, off) + w.alpha * alpha * alpha;
+    if (!(rest < most)) return m;
+    m.rest = rest;
+    if (turned) {
         vec3 n = filtered_without(r, s, far, m.share);
         double odd = (1.0 - m.share) * (v3_length(n) - 1.0);
-        m.n = v3_normalize(n), w.code = 0.0; // the normal's are `odd`
-        m.rest = turn * v3_dot(v3_sub(m.n, near->n), v3_sub(m.n, near->n)) + odd * odd;
+        m.n = v3_normalize(n);
+        m.rest += turn * v3_dot(v3_sub(m.n, near->n), v3_sub(m.n, near->n)) + odd * odd;
+    } else {
+        m.rest += w.code * v3_dot(code, code);
     }
-    const difference off = {v3_sub(at.p, v3_scale(way.p, m.share)), v3_sub(at.code, v3_scale(way.code, m.share)),
-                            at.alpha - way.alpha * m.share};
-    m.rest += dot(&w, &off, &off);
     return m;
 }
 
-mixture filtered_mixture(const repair *r, const stored *s, const side *list, int count)
+mixture filtered_mixture(const repair *r, const stored *s, const side *list, int first, int count)
 {
     mixture best = {.rest = INFINITY};
+    double turned[MOST_SIDES];
+    for (int i = 0; i < count && r->lengths; i++) turned[i] = filtered_share(r, s, &list[i]);
     for (int i = 0; i < count; i++)
-        for (int k = i + 1; k < count; k++) {
-            bool swap = list[i].z == 0.0 || (list[k].z > 0.0 && list[k].z < list[i].z);
-            const side *near = &list[swap ? k : i], *far = &list[swap ? i : k];
+        for (int k = i + 1 > first ? i + 1 : first; k < count; k++) {
+            const bool swap = list[i].z == 0.0 || (list[k].z > 0.0 && list[k].z < list[i].z);
+            const int near = swap ? k : i, far = swap ? i : k;
             for (int turns = 0; turns < 1 + r->lengths; turns++) {
-                mixture m = mix(r, s, near, far, turns);
+                mixture m = mix(r, s, &list[near], &list[far], turns ? &turned[far] : NULL, best.rest);
                 if (m.rest < best.rest) best = m;
             }
         }

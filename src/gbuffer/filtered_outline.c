@@ -8,17 +8,19 @@
 #include "base/sort.h"
 #include "gbuffer/filtered.h"
 
-enum { CLEAN = 3, TERMS = 3, MOST_MEASURED = 256, LEAST_MEASURED = 8, MOST_TRIED = 4096, QUADRATURE = 24 };
+enum { CLEAN = 3, TERMS = 3, MOST_MEASURED = 256, LEAST_MEASURED = 8, MOST_TRIED = 4096 };
 static const double BOX = 0.0; // no Gauss: all of a pixel counts alike
 static const double least_width = 0.15, most_width = 1.0;
-static const double telling = 0.1;   // 1 - cosine between both sides' normals, from which a mean's length tells the share
-static const double steepest = 0.25; // squared cosine between normal and ray, above which an outline is an edge
-static const double grows = 0.4;     // of the growth of the squared cosine that a circle has
-static const double even = 0.5;      // change of the turning, over itself
-static const double turning = 0.02;  // of normals a pixel apart, that a round surface has
-static const double aligned = 0.6;   // cosine between a step and the way inwards
-static const double like = 0.8;      // cosine between normals of one surface a few pixels apart
-static const double near_by = 0.05;  // of the depth, that one surface may change in a few pixels
+static const double telling = 0.1;     // 1 - cosine between both sides' normals, from which a mean's length tells the share
+static const double steepest = 0.25;   // squared cosine between normal and ray, above which an outline is an edge
+static const double grows = 0.4;       // of the growth of the squared cosine that a circle has
+static const double even = 0.5;        // change of the turning, over itself
+static const double turning = 0.02;    // of normals a pixel apart, that a round surface has
+static const double aligned = 0.6;     // cosine between a step and the way inwards
+static const double like = 0.8;        // cosine between normals of one surface a few pixels apart
+static const double odd_normal = 0.05; // of the far side's normal: what a bump map adds from pixel to pixel
+static const double most_odd = 4.0;    // of the deviation that is expected, by which two estimates differ at most
+static const double near_by = 0.05;    // of the depth, that one surface may change in a few pixels
 
 // The way inwards from a mixed pixel.
 typedef struct way {
@@ -112,8 +114,9 @@ static double distance_of(double width, double share) { return width == BOX ? 0.
 
 // Means of 1, root and square of the root of the distance from the outline, over what the filter sees of the surface around a
 // distance.
-static void means(double distance, double width, double out[TERMS])
+static void means(const repair *r, double distance, double out[TERMS])
 {
+    const double width = r->width;
     if (width == BOX) {
         double from = fmax(distance - 0.5, 0.0), to = fmax(distance + 0.5, 1e-3);
         out[0] = 1.0, out[1] = 2.0 / 3.0 * (pow(to, 1.5) - pow(from, 1.5)) / (to - from), out[2] = 0.5 * (from + to);
@@ -121,7 +124,7 @@ static void means(double distance, double width, double out[TERMS])
     }
     double sum = 0.0, root = 0.0, square = 0.0;
     for (int k = 0; k <= QUADRATURE; k++) {
-        double x = 6.0 * k / QUADRATURE - 3.0, s = distance + width * x, weight = exp(-0.5 * x * x);
+        double x = 6.0 * k / QUADRATURE - 3.0, s = distance + width * x, weight = r->bell[k];
         if (s > 0.0) sum += weight, root += weight * sqrt(s), square += weight * s;
     }
     out[0] = 1.0, out[1] = sum > 0.0 ? root / sum : 0.0, out[2] = sum > 0.0 ? square / sum : 0.0;
@@ -132,14 +135,43 @@ static double determinant(const double *a, const double *b, const double *c)
     return a[0] * (b[1] * c[2] - b[2] * c[1]) - b[0] * (a[1] * c[2] - a[2] * c[1]) + c[0] * (a[1] * b[2] - a[2] * b[1]);
 }
 
-// Weights of three means by which a polynomial with these means has its value at the root.
-static bool interpolate(double means_of[TERMS][TERMS], double root, double out[TERMS])
+// Weights of three means by which a polynomial with these means has the mean `at`.
+static bool weigh(double means_of[TERMS][TERMS], const double at[TERMS], double out[TERMS])
 {
-    const double at[TERMS] = {1.0, root, root * root};
     const double *a = means_of[0], *b = means_of[1], *c = means_of[2];
     double all = determinant(a, b, c);
     if (!(fabs(all) > 1e-6)) return false;
     out[0] = determinant(at, b, c) / all, out[1] = determinant(a, at, c) / all, out[2] = determinant(a, b, at) / all;
+    return true;
+}
+
+// Its value at the root.
+static bool interpolate(double means_of[TERMS][TERMS], double root, double out[TERMS])
+{
+    const double at[TERMS] = {1.0, root, root * root};
+    return weigh(means_of, at, out);
+}
+
+static void means_along(const repair *r, const way *w, double distance, double out[1 + CLEAN][TERMS])
+{
+    for (int k = 0; k <= CLEAN; k++) means(r, distance + (k ? w->first + k - 1 : 0) * w->along, out[k]);
+}
+
+// The stored depth tells the far side's share, too, once the depth of the near side's part is known. The less the normals of both
+// sides differ, the less their length tells; the less the depths differ, the less these do. False where the share is left.
+static bool weigh_depths(repair *r, const stored *s, const way *w, double known[1 + CLEAN][TERMS], int x, int y, mixture *m)
+{
+    double weights[TERMS], z = 0.0;
+    if (m->far->z == 0.0 || !weigh(known + 1, known[0], weights)) return false;
+    for (int k = 0; k < CLEAN; k++) z += weights[k] * clean_depth(r, w, k, x, y);
+    if (!(fabs(z - m->near->z) < near_by * z) || !(m->far->z > z)) return false;
+    const camera *c = &r->b->g->camera;
+    vec3 near = filtered_values(r, x, y, z), gap = v3_sub(m->far->p, near);
+    double share = v3_dot(v3_sub(s->p, near), gap) / v3_dot(gap, gap);
+    double odd = (c->kind == CAMERA_PERSPECTIVE ? z : 1.0) / c->fx / (m->far->z - z); // a depth off by a pixel's size
+    double odd_length = odd_normal / (1.0 - v3_dot(m->n, m->far->n));
+    if (!(fabs(share - m->share) < most_odd * hypot(odd, odd_length))) return false;
+    m->share += (share - m->share) * odd_length * odd_length / (odd_length * odd_length + odd * odd);
     return true;
 }
 
@@ -148,8 +180,16 @@ bool filtered_outline(repair *r, const stored *s, const mixture *mixed, int x, i
     mixture m = *mixed;
     way w;
     if (!r->has_width || !refine(r, s, &m) || !find_way(r, &m, x, y, &w) || !is_round(r, &m, &w, x, y)) return false;
-    double distance = distance_of(r->width, m.share), root = sqrt(fmax(distance, 0.0)), known[1 + CLEAN][TERMS], weights[TERMS];
-    for (int k = 0; k <= CLEAN; k++) means(distance + (k ? w.first + k - 1 : 0) * w.along, r->width, known[k]);
+    double known[1 + CLEAN][TERMS], weights[TERMS];
+    double distance = distance_of(r->width, m.share);
+    means_along(r, &w, distance, known);
+    if (weigh_depths(r, s, &w, known, x, y, &m)) {
+        if (!(m.share <= 0.5)) return false;
+        m.n = filtered_without(r, s, m.far, m.share);
+        distance = distance_of(r->width, m.share);
+        means_along(r, &w, distance, known);
+    }
+    double root = sqrt(fmax(distance, 0.0));
     if (!interpolate(known, root, weights)) return false;
     vec3 at = v3_scale(m.n, weights[0]);
     for (int k = 0; k < 2; k++) at = v3_add(at, v3_scale(clean_pixel(r, &w, k, x, y)->n, weights[1 + k]));
@@ -167,7 +207,7 @@ static double share_beside(repair *r, const mixture *m, int x, int y)
     if (!filtered_inside(r->b, x, y)) return (double)NAN;
     const stored *s = filtered_at(r, x, y);
     if (filtered_clean(r, x, y)) return v3_dot(s->n, m->near->n) > v3_dot(s->n, m->far->n) ? 1.0 : 0.0;
-    mixture beside = filtered_mixture(r, s, list, filtered_sides(r, x, y, list));
+    mixture beside = filtered_mixture(r, s, list, 0, filtered_sides(r, x, y, list));
     if (!isfinite(beside.rest)) return (double)NAN;
     bool same = (beside.far->z == 0.0) == (m->far->z == 0.0) && v3_dot(beside.near->n, m->near->n) > like;
     refine(r, s, &beside);
@@ -185,7 +225,7 @@ static bool cross(repair *r, int x, int y, crossing *out)
     side list[SIDES];
     way w;
     const stored *s = filtered_at(r, x, y);
-    mixture m = filtered_mixture(r, s, list, filtered_sides(r, x, y, list));
+    mixture m = filtered_mixture(r, s, list, 0, filtered_sides(r, x, y, list));
     if (!isfinite(m.rest) || !refine(r, s, &m) || m.share < 0.1 || m.share > 0.4) return false;
     if (!find_way(r, &m, x, y, &w) || !is_round(r, &m, &w, x, y) || (w.dx != 0 && w.dy != 0)) return false;
     double sum = 0.5 - m.share;
@@ -226,5 +266,6 @@ void filtered_measure(repair *r)
     if (count < LEAST_MEASURED) return;
     double width = fmin(fmax(median_of(found, count, NULL), least_width), most_width);
     r->has_width = true;
+    for (int k = 0; k <= QUADRATURE; k++) r->bell[k] = exp(-0.5 * (6.0 * k / QUADRATURE - 3.0) * (6.0 * k / QUADRATURE - 3.0));
     r->width = median_of(found, count, &box) <= median_of(found, count, &width) ? box : width;
 }

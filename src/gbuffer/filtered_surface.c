@@ -126,12 +126,12 @@ static bool follow_round(repair *r, const mixture *m, int x, int y, double *z, v
     return true;
 }
 
-void filtered_settle(repair *r, const stored *s, const mixture *m, int x, int y, double *z, vec3 *n)
+bool filtered_settle(repair *r, const stored *s, const mixture *m, int x, int y, double *z, vec3 *n)
 {
     const side *own = m->share > 0.5 ? m->far : m->near;
-    if (filtered_outline(r, s, m, x, y, z, n) || follow_round(r, m, x, y, z, n)) return;
+    if (filtered_outline(r, s, m, x, y, z, n) || follow_round(r, m, x, y, z, n)) return true;
     *z = own->z, *n = own->n;
-    if (own != m->near || !r->lengths || !(v3_dot(m->n, own->n) > 0.0)) return;
+    if (own != m->near || !r->lengths || !(v3_dot(m->n, own->n) > 0.0)) return false;
     vec3 bump;
     int u = own->u + (own->u > x) - (own->u < x), v = own->v + (own->v > y) - (own->v < y); // one further inside
     double odd = bump_at(r, u, v, &bump) ? 0.003 + 0.3 * v3_length(bump) : odd_angle;
@@ -139,4 +139,5 @@ void filtered_settle(repair *r, const stored *s, const mixture *m, int x, int y,
     vec3 at = normal_at_centre(r->b, v3_normalize(v3_sub(m->n, bump)), clean, own, fmax(m->share, 0.0), x, y);
     *n = v3_normalize(v3_add(at, bump));
     *z = near_depth(r, s, m, at, clean, odd, x, y);
+    return false;
 }

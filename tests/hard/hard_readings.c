@@ -398,11 +398,24 @@ static void filtered_outlines(void **state)
     printf("figure: outlines of filtered passes: at most %.4f rms\n", worst);
 }
 
+// Where more than two surfaces meet in a pixel, or one is too narrow to fill one.
+static void filtered_corners(void **state)
+{
+    readings *r = *state;
+    const reading_case c = {
+        .scene = SCENE_FACETS, .position = WORLD, .normal = WORLD, .encoding = NORMAL_UNORM, .filter = FILTER_LOBES};
+    open_scene(r, SCENE_FACETS, LARGE);
+    const double rms = must_be_right(r, &c);
+    close_scene(r);
+    printf("figure: corners of filtered passes: %.4f rms\n", rms);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_combination),  cmocka_unit_test(filtered_against_closest),
                                        cmocka_unit_test(filtered_as_stored), cmocka_unit_test(filtered_outlines),
-                                       cmocka_unit_test(depth_alone),        cmocka_unit_test(changed_depths)};
+                                       cmocka_unit_test(filtered_corners),   cmocka_unit_test(depth_alone),
+                                       cmocka_unit_test(changed_depths)};
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, open_readings, close_readings);
 }
