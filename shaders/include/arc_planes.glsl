@@ -102,7 +102,6 @@ void block_by_planes(inout Sectors sectors, Side s, vec3 V, vec3 across, float n
         const float WIDEST = 0.5 * PI - 1e-4;
         float from = max(t0 + max(angle_of(line.x), -WIDEST), n - 0.5 * PI), to = min(t0 + min(angle_of(line.y), WIDEST), n + 0.5 * PI);
         float width = (to - from) / float(CHORDS);
-        int chords = line.x < line.y && width > 0.0 ? CHORDS : 0;
 #ifdef BOUNCE
         vec3 sent = h < 0.0 ? FETCH(planes_image, ivec2(PLANE_LIGHT, i)).rgb : vec3(0.0); // from the side that the camera sees
 #else
@@ -112,6 +111,9 @@ void block_by_planes(inout Sectors sectors, Side s, vec3 V, vec3 across, float n
         uint believed = uint(belief.y) | uint(belief.z) << 16u;
         vec2 edge = vec2(cos(from), sin(from)), turn = vec2(cos(width), sin(width)), part = vec2(cos(place * width), sin(place * width));
         float c = share_at(s, from, edge);
+        // Most planes lie where the picture's own surfaces have blocked all already.
+        uvec2 left_open = sectors_between(c, share_at(s, to), jitter) & believed & ~sectors.blocked;
+        int chords = line.x < line.y && width > 0.0 && (left_open.x | left_open.y) != 0u ? CHORDS : 0;
         for (int j = 0; j < chords; j++) {
             vec2 d = turned(edge, part);
             edge = turned(edge, turn);
