@@ -1,5 +1,6 @@
 #version 450 core
 // One direction of a separable bilateral filter (include/bilateral.glsl) on linear quantities; weights are always divided out.
+// FITTED: a line is fitted instead of a mean (include/bilateral_line.glsl).
 // SCALARS and COLOURS say how many pictures go through together (include/values.glsl).
 #define COLOUR vec3 // the fourth number is unused
 #include "include/frame.glsl"

@@ -70,3 +70,34 @@ Values mean_of(Values from, Values sum, float total) {
 #endif
     return from;
 }
+
+#ifdef FITTED
+// What values lie between.
+struct Range { Values least, most; };
+
+Range reach(Range r, Values v) {
+#if SCALARS > 0
+    r.least.scalar0 = min(r.least.scalar0, v.scalar0), r.most.scalar0 = max(r.most.scalar0, v.scalar0);
+#endif
+#if COLOURS > 0
+    r.least.colour0 = min(r.least.colour0, v.colour0), r.most.colour0 = max(r.most.colour0, v.colour0);
+#endif
+#if COLOURS > 1
+    r.least.colour1 = min(r.least.colour1, v.colour1), r.most.colour1 = max(r.most.colour1, v.colour1);
+#endif
+    return r;
+}
+
+Values within(Range r, Values v) {
+#if SCALARS > 0
+    v.scalar0 = clamp(v.scalar0, r.least.scalar0, r.most.scalar0);
+#endif
+#if COLOURS > 0
+    v.colour0 = clamp(v.colour0, r.least.colour0, r.most.colour0);
+#endif
+#if COLOURS > 1
+    v.colour1 = clamp(v.colour1, r.least.colour1, r.most.colour1);
+#endif
+    return v;
+}
+#endif

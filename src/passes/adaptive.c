@@ -156,7 +156,8 @@ static bool conclude(work *w, error *e)
         .writes = {{"root_out", &c->image[IMAGE_ERROR]}},
     };
     int radius = c->set.blur > ERROR_RADIUS ? c->set.blur : ERROR_RADIUS;
-    return pass_blur(c, radius, &w->square, NULL, NULL, e) && pass_make_image(c, IMAGE_ERROR, e) && pass_run(c, &call, e);
+    return pass_blur(c, &(pass_blurring){.radius = radius, .scalars = {&w->square}}, e) && pass_make_image(c, IMAGE_ERROR, e) &&
+           pass_run(c, &call, e);
 }
 
 static void count_samples(adaptive_sampling *r)

@@ -15,34 +15,46 @@ static void swap(gpu_image *a, gpu_image *b)
     *b = t;
 }
 
-bool pass_blur(pass_context *c, int radius, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e)
+enum { KIND = 2, PLACES = 2 * KIND }; // scalars, then colours
+
+// The images that are there, each kind from its first place on; how many of each kind.
+static void gather(const pass_blurring *b, gpu_image *found[PLACES], int count[2])
 {
-    gpu_image t0 = {0}, t1 = {0}, t2 = {0};
-    gpu_image *s0 = scalar0 && scalar0->id ? scalar0 : NULL, *s1 = scalar1 && scalar1->id ? scalar1 : NULL;
-    gpu_image *col = colour0 && colour0->id ? colour0 : NULL;
-    if (!s0 && s1) s0 = s1, s1 = NULL;
-    variant v = {{0}};
-    variant_number(&v, "SCALARS", (s0 != NULL) + (s1 != NULL));
-    variant_number(&v, "COLOURS", col != NULL);
-    bool ok = (!s0 || pass_make(c, &t0, GL_R32F, 1.0f, e)) && (!s1 || pass_make(c, &t1, GL_R32F, 1.0f, e)) &&
-              (!col || pass_make(c, &t2, GL_RGBA32F, 0.0f, e));
-    for (int direction = 0; ok && direction < 2; direction++) {
-        const blur_params params = {.step = {direction == 0, direction == 1}, .radius = radius, .sharpness = SHARPNESS};
-        const pass_call call = {
-            .program = "blur",
-            .variant = v.words,
-            PASS_PARAMS(params),
-            .reads = {{"scalar0_in", s0}, {"scalar1_in", s1}, {"colour0_in", col}},
-            .writes = {{"scalar0_out", &t0}, {"scalar1_out", &t1}, {"colour0_out", &t2}},
-        };
-        ok = pass_run(c, &call, e);
-        if (s0) swap(s0, &t0);
-        if (s1) swap(s1, &t1);
-        if (col) swap(col, &t2);
+    for (int i = 0; i < PLACES; i++) {
+        int kind = i / KIND;
+        gpu_image *image = kind == 0 ? b->scalars[i] : b->colours[i - KIND];
+        if (image && image->id) found[kind * KIND + count[kind]++] = image;
     }
-    gpu_image_free(&t0);
-    gpu_image_free(&t1);
-    gpu_image_free(&t2);
+}
+
+bool pass_blur(pass_context *c, const pass_blurring *b, error *e)
+{
+    static const char *const in[] = {"scalar0_in", "scalar1_in", "colour0_in", "colour1_in"}, *const out[] = {
+                                                                                                  "scalar0_out", "scalar1_out",
+                                                                                                  "colour0_out", "colour1_out"};
+    gpu_image *image[PLACES] = {NULL}, scratch[PLACES] = {{0}};
+    int count[2] = {0};
+    gather(b, image, count);
+    variant v = {{0}};
+    variant_number(&v, "SCALARS", count[0]);
+    variant_number(&v, "COLOURS", count[1]);
+    variant_add(&v, b->fitted, "FITTED");
+    bool ok = true;
+    for (int i = 0; ok && i < PLACES; i++)
+        ok = !image[i] || pass_make(c, &scratch[i], i < KIND ? GL_R32F : GL_RGBA32F, i < KIND ? 1.0f : 0.0f, e);
+    for (int direction = 0; ok && direction < 2; direction++) {
+        const blur_params params = {.step = {direction == 0, direction == 1}, .radius = b->radius, .sharpness = SHARPNESS};
+        pass_call call = {.program = "blur", .variant = v.words, PASS_PARAMS(params)};
+        for (int i = 0, n = 0; i < PLACES; i++) {
+            if (!image[i]) continue;
+            call.reads[n] = (pass_picture){in[i], image[i]};
+            call.writes[n++] = (pass_picture){out[i], &scratch[i]};
+        }
+        ok = pass_run(c, &call, e);
+        for (int i = 0; i < PLACES; i++)
+            if (image[i]) swap(image[i], &scratch[i]);
+    }
+    for (int i = 0; i < PLACES; i++) gpu_image_free(&scratch[i]);
     return ok;
 }
 

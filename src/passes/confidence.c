@@ -14,5 +14,5 @@ bool pass_confidence(pass_context *c, error *e)
         .writes = {{"confidence_image", out}},
     };
     return arc_make_inputs(c, e) && pass_make_image(c, IMAGE_CONFIDENCE, e) && pass_run(c, &call, e) &&
-           (c->set.blur == 0 || pass_blur(c, c->set.blur, out, NULL, NULL, e));
+           (c->set.blur == 0 || pass_blur(c, &(pass_blurring){.radius = c->set.blur, .scalars = {out}}, e));
 }

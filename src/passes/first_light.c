@@ -8,7 +8,8 @@ enum { BLUR = 1 };
 // Radiance of the smaller frame `q`, brought to the frame of `c`.
 static bool light_from(pass_context *q, pass_context *c, error *e)
 {
-    return arc_run_light(q, &(arc_light){.sky = true}, e) && pass_blur(q, BLUR, NULL, NULL, &q->image[IMAGE_RADIANCE], e) &&
+    return arc_run_light(q, &(arc_light){.sky = true}, e) &&
+           pass_blur(q, &(pass_blurring){.radius = BLUR, .colours = {&q->image[IMAGE_RADIANCE]}}, e) &&
            pass_upsample(c, q, IMAGE_BIT(IMAGE_RADIANCE), e);
 }
 

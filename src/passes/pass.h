@@ -254,8 +254,13 @@ bool pass_denoise(pass_context *c, error *e); // occlusion: in place
 // Runs a march at the pixels of a list, then, unless there is no blur, the filter of pass_blur at those pixels of what it `made`:
 // radiance, visibility, indirect.
 bool pass_at_lone(pass_context *c, const pixel_list *lone, const pass_call *march, image_set made, error *e);
-// In place, over `radius` pixels; NULL = none.
-bool pass_blur(pass_context *c, int radius, gpu_image *scalar0, gpu_image *scalar1, gpu_image *colour0, error *e);
+// In place, over `radius` pixels; NULL or an image that is not made = none.
+typedef struct pass_blurring {
+    int radius;
+    bool fitted; // by lines, not means (shaders/include/bilateral_line.glsl); with one scalar at most
+    gpu_image *scalars[2], *colours[2];
+} pass_blurring;
+bool pass_blur(pass_context *c, const pass_blurring *b, error *e);
 // Brings layers of a frame of half the size (gbuffer/half_size.h) to the size of `c`: the images of `which` that `small` has and
 // `c` lacks.
 bool pass_upsample(pass_context *c, const pass_context *small, image_set which, error *e);

@@ -12,8 +12,11 @@
 
 // Of the passes that serve every method; the methods' rows name those of their own shaders.
 static const variant_row shared[] = {
-    {"blur", "SCALARS=0 COLOURS=1 | SCALARS=1 COLOURS=0 | SCALARS=1 COLOURS=1 | SCALARS=2 COLOURS=0 | SCALARS=2 COLOURS=1", true,
-     false},
+    {"blur",
+     "SCALARS=0 COLOURS=1 | SCALARS=1 COLOURS=0 | SCALARS=1 COLOURS=1 | SCALARS=2 COLOURS=0 | SCALARS=2 COLOURS=1 | "
+     "SCALARS=0 COLOURS=1 FITTED | SCALARS=0 COLOURS=2 FITTED | SCALARS=1 COLOURS=0 FITTED | SCALARS=1 COLOURS=1 FITTED | "
+     "SCALARS=1 COLOURS=2 FITTED",
+     true, false},
     {"composite",
      RELIT("RADIANCE") " | " RELIT(
          "VISIBILITY") " | "

@@ -41,15 +41,18 @@ static gpu_image *if_written(pass_context *c, const plan_step *s, image_id id)
     return s->writes & IMAGE_BIT(id) ? &c->image[id] : NULL;
 }
 
-// Two scalars and one of the colours.
+// Light that is marched for at a smaller size has few samples on a surface, so it takes a filter that is twice as wide, and
+// fitted: that keeps what lies at the foot of things and along edges. Other bounces vary less along a surface than light does.
 static bool run_blur(pass_context *c, const plan_step *s, error *e)
 {
-    static const image_id colours[] = {IMAGE_RADIANCE, IMAGE_INDIRECT, IMAGE_BENT};
-    gpu_image *colour = NULL;
-    for (size_t i = 0; !colour && i < sizeof colours / sizeof *colours; i++) colour = if_written(c, s, colours[i]);
-    // At a smaller size there are fewer samples on a surface, and a bounce varies less along it than light does.
     bool wider = s->size != STEP_WHOLE && s->writes & BIT(INDIRECT) && c->set.blur > 0;
-    return pass_blur(c, c->set.blur + wider, if_written(c, s, IMAGE_OCCLUSION), if_written(c, s, IMAGE_VISIBILITY), colour, e);
+    pass_blurring b = {.radius = s->fitted ? 2 * c->set.blur : c->set.blur + wider,
+                       .fitted = s->fitted,
+                       .scalars = {if_written(c, s, IMAGE_OCCLUSION), if_written(c, s, IMAGE_VISIBILITY)}};
+    static const image_id colours[] = {IMAGE_RADIANCE, IMAGE_INDIRECT, IMAGE_BENT};
+    for (size_t i = 0, n = 0; i < sizeof colours / sizeof *colours; i++)
+        if (s->writes & IMAGE_BIT(colours[i])) b.colours[n++] = &c->image[colours[i]];
+    return pass_blur(c, &b, e);
 }
 
 static bool run_tone(pass_context *c, const plan_step *s, error *e)
@@ -167,6 +170,12 @@ static void add_refining(builder *b, image_set made)
                            .call = made & LIGHT ? f->plan->method->run_light : f->plan->estimator->run});
 }
 
+// Light of a frame of half the size that the method marches for.
+static bool is_fitted(const step_facts *f, step_size size, image_set images)
+{
+    return size == STEP_SMALL && f->plan->method->run_light && !(images & ~(LIGHT | BIT(INDIRECT)));
+}
+
 static void add_blur(builder *b, step_size size, image_set images)
 {
     images &= *there(b, size);
@@ -174,6 +183,7 @@ static void add_blur(builder *b, step_size size, image_set images)
         add(b, (plan_step){.pass = "blur",
                            .why = "noise of the sample pattern",
                            .size = size,
+                           .fitted = is_fitted(b->f, size, images),
                            .reads = images,
                            .writes = images,
                            .run = run_blur});
@@ -191,7 +201,10 @@ static void add_filters(builder *b, step_size size)
                            .writes = BIT(OCCLUSION),
                            .run = run_pass,
                            .call = pass_denoise});
-    add_blur(b, size, (difference ? 0 : BIT(OCCLUSION)) | LIGHT);
+    image_set light = LIGHT | (steps_bounce_within(b->f) ? BIT(INDIRECT) : 0);
+    bool apart = is_fitted(b->f, size, light); // one filter for all of them
+    add_blur(b, size, (difference ? 0 : BIT(OCCLUSION)) | (apart ? 0 : LIGHT));
+    if (apart) add_blur(b, size, light);
     add_blur(b, size, BIT(BENT));
 }
 
@@ -251,7 +264,9 @@ static void add_bounce(builder *b, step_size size)
                            .writes = BIT(INDIRECT),
                            .run = run_pass,
                            .call = p->estimator->run});
-    if (f->set->blur > 0 && !p->estimator->exact) add_blur(b, size == STEP_AMID ? STEP_SMALL : size, BIT(INDIRECT));
+    step_size made = size == STEP_AMID ? STEP_SMALL : size;
+    bool filtered = steps_bounce_within(f) && is_fitted(f, made, BIT(INDIRECT)); // with the light
+    if (f->set->blur > 0 && !p->estimator->exact && !filtered) add_blur(b, made, BIT(INDIRECT));
 }
 
 // ---- at half the size

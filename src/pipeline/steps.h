@@ -19,6 +19,7 @@ typedef enum step_size {
 typedef struct plan_step {
     const char *pass; // as reports name it
     bool runs;
+    bool fitted;     // of a blur: as light of a smaller frame is filtered
     const char *why; // it runs, or not
     step_size size;
     image_set reads, writes; // of the smaller frame: what STEP_SMALL and STEP_UP read, what STEP_SMALL, _AMID, _DOWN write
