@@ -278,10 +278,12 @@ static bool make_senders(pass_context *c, const gpu_image *sender, const gpu_ima
 
 static bool find_hidden_light(pass_context *c, error *e)
 {
+    // Where further G-buffers show what is around, the guess of how open the unseen is does not hold.
+    const openness open = openness_even(1.0);
     const pass_settings *s = &c->set;
     const hidden_place at = {.gb = c->gb,
                              .planes = &c->planes,
-                             .outside = &s->outside,
+                             .outside = arc_has_surround(c) ? &open : &s->outside,
                              .map_from_camera = m3_mul(c->env->map_from_world, s->world_from_camera),
                              .upright_from_camera = s->upright_from_camera,
                              .upright_eye = s->upright_eye};
