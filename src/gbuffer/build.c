@@ -127,7 +127,8 @@ bool gbuffer_build(const exrio_file *file, const resolution *r, const gbuffer_op
     if (done) {
         positions_final(&b);
         normals_make(&b);
-        done = filtered_mend(&b) && albedo_make(&b) && coverage_make(&b) && mixed_make(&b) && colours_make(&b) && summarise(&b);
+        done = cracks_mend(&b) && filtered_mend(&b) && albedo_make(&b) && coverage_make(&b) && mixed_make(&b) &&
+               colours_make(&b) && summarise(&b);
     }
     free(b.surface);
     free(b.position.raw);

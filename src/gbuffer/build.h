@@ -211,6 +211,8 @@ bool filtered_mend(build *b);
 bool mixed_asked(const build *b);
 bool mixed_make(build *b);
 
+// cracks.c: after depth and normals are made.
+bool cracks_mend(build *b);
 // defects.c: one warning for each kind of sample that could not be used, if it touches more than a thousandth of the pixels.
 void defects_warn(build *b);
 
