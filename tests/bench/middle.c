@@ -22,6 +22,20 @@ static void *cut(const void *from, size_t size, columns c, error *e)
     return to;
 }
 
+// The mixed pixels whose neighbour lies inside, too.
+static void cut_mixed(const gbuffer *from, columns c, gbuffer *out, error *e)
+{
+    out->mixed_count = 0;
+    out->mixed = from->mixed ? mem_pixels(from->mixed_count, sizeof *out->mixed, e) : NULL;
+    for (size_t i = 0; out->mixed && i < from->mixed_count; i++) {
+        mixed_pixel m = from->mixed[i];
+        int x = (int)(m.pixel & 0xffff) - c.first;
+        if (x < 0 || x >= c.count || x + m.x < 0 || x + m.x >= c.count) continue;
+        m.pixel = (m.pixel & 0xffff0000u) | (uint32_t)x;
+        out->mixed[out->mixed_count++] = m;
+    }
+}
+
 static void cut_gbuffer(const gbuffer *from, columns c, gbuffer *out, error *e)
 {
     *out = *from;
@@ -31,6 +45,7 @@ static void cut_gbuffer(const gbuffer *from, columns c, gbuffer *out, error *e)
     out->normal = cut(from->normal, 4 * sizeof *from->normal, c, e);
     out->albedo = cut(from->albedo, 4 * sizeof *from->albedo, c, e);
     out->beauty = out->material = out->emission = out->diffuse_direct = out->coverage = NULL;
+    cut_mixed(from, c, out, e);
     out->valid = 0;
     for (int i = 0; out->depth && i < c.count * c.height; i++) out->valid += out->depth[i] > 0.0f;
 }
