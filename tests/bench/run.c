@@ -108,8 +108,8 @@ bool bench_run(rig *r, const bench_scene *b, const bench_row *row, unsigned laye
     r->job.light.image = b->env_image;
     r->job.light.loaded = true;
     r->job.light.sunless = *b->sunless;
-    r->options.bounce = bounce_of(row);
-    r->options.report = "timed"; // a report makes the passes wait and take their times
+    r->options.bounce = row->bounce; // without, the method's own
+    r->options.report = "timed";     // a report makes the passes wait and take their times
     bool ok = (row->m->source != SEES_MESH || open_mesh(r, b, row, set, e)) && (!row->relit || store_sh(r, b, row, &set, e)) &&
               rig_run(r, &b->gb, row->m, &set, layers, out, e);
     forget_sh(r);
