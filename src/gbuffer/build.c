@@ -35,6 +35,8 @@ static bool run_row(void *context, size_t row, int worker)
     return true;
 }
 
+const int build_around[BUILD_AROUND][2] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
+
 void build_rows(build *b, build_row_fn fn)
 {
     row_job job = {b, fn};

@@ -211,6 +211,10 @@ bool filtered_mend(build *b);
 bool mixed_asked(const build *b);
 bool mixed_make(build *b);
 
+// The eight pixels around one; k and 7 - k are opposite.
+enum { BUILD_AROUND = 8 };
+extern const int build_around[BUILD_AROUND][2];
+
 // cracks.c: after depth and normals are made.
 bool cracks_mend(build *b);
 // defects.c: one warning for each kind of sample that could not be used, if it touches more than a thousandth of the pixels.

@@ -5,11 +5,8 @@
 #include "base/mem.h"
 #include "gbuffer/build.h"
 
-enum { AROUND = 8 };
-static const int step[AROUND][2] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0},
-                                    {1, 0},   {-1, 1}, {0, 1},  {1, 1}}; // k and 7 - k are opposite
-static const double ONE_PLANE = 0.95;                                    // least cosine between their normals and the mean
-static const double FAR_BEHIND = 1.05, STEPS_BEHIND = 4.0;               // times their depth; times the steps between them
+static const double ONE_PLANE = 0.95;                      // least cosine between their normals and the mean
+static const double FAR_BEHIND = 1.05, STEPS_BEHIND = 4.0; // times their depth; times the steps between them
 // More pixels than this share are no accident but a pattern, such as a grille.
 static const double MOST_CRACKS = 1e-3;
 
@@ -27,19 +24,19 @@ static vec3 normal_at(const gbuffer *g, size_t i)
 // The eight around a pixel inside the frame, if they form one plane: depth and normal of that at the pixel.
 static bool plane_around(const gbuffer *g, int x, int y, double *depth, vec3 *normal, double *largest_step)
 {
-    double near[AROUND], mean = 0.0;
-    vec3 n[AROUND], sum = v3(0, 0, 0);
-    for (int k = 0; k < AROUND; k++) {
-        size_t i = (size_t)(y + step[k][1]) * (size_t)g->width + (size_t)(x + step[k][0]);
+    double near[BUILD_AROUND], mean = 0.0;
+    vec3 n[BUILD_AROUND], sum = v3(0, 0, 0);
+    for (int k = 0; k < BUILD_AROUND; k++) {
+        size_t i = (size_t)(y + build_around[k][1]) * (size_t)g->width + (size_t)(x + build_around[k][0]);
         if (!(g->depth[i] > 0.0f)) return false;
         near[k] = nearness(g, (double)g->depth[i]), n[k] = normal_at(g, i);
-        mean += near[k] / AROUND, sum = v3_add(sum, n[k]);
+        mean += near[k] / BUILD_AROUND, sum = v3_add(sum, n[k]);
     }
     double pixel = (g->camera.kind == CAMERA_ORTHOGRAPHIC ? 1.0 : fabs(mean)) / fmin(g->camera.fx, g->camera.fy);
     *largest_step = pixel;
-    for (int k = 0; k < AROUND; k++) {
+    for (int k = 0; k < BUILD_AROUND; k++) {
         if (v3_dot(n[k], sum) < ONE_PLANE * v3_length(sum)) return false;
-        if (fabs(0.5 * (near[k] + near[AROUND - 1 - k]) - mean) > pixel) return false;
+        if (fabs(0.5 * (near[k] + near[BUILD_AROUND - 1 - k]) - mean) > pixel) return false;
         *largest_step = fmax(*largest_step, fabs(near[k] - mean));
     }
     *depth = depth_of(g, mean), *normal = v3_scale(sum, 1.0 / v3_length(sum));

@@ -153,7 +153,7 @@ static bool mend_all(repair *r)
         const size_t count = put(b, &list);
         if (!b->normal.there) normals_make(b);  // of the mended depths; the lengths are no longer needed
         atomic_store(&b->defects.positions, 0); // they are among the mended
-        build_note(b, "%zu pixels of filtered passes lie between surfaces and were given to the nearest one", count);
+        build_note(b, "%zu pixels of filtered passes lie between surfaces and were given to one, with its own values", count);
     }
     free(list.items);
     return ok;

@@ -7,9 +7,7 @@
 #include "base/threads.h"
 #include "gbuffer/build.h"
 
-enum { AROUND = 8 };
-static const int step[AROUND][2] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
-static const double distance[AROUND] = {1.4142, 1, 1.4142, 1, 1, 1.4142, 1, 1.4142};
+static const double distance[BUILD_AROUND] = {1.4142, 1, 1.4142, 1, 1, 1.4142, 1, 1.4142};
 
 // A neighbour's normal is taken for the pixel's own if it is nearer to unit length by more than the pixel lies off the
 // neighbour's tangent plane, in pixels, and than it lies away, by these weights. Both planes may lie this many pixels apart at
@@ -41,8 +39,10 @@ static vec3 made_normal(const build *b, int x, int y)
 
 static bool near_background(const build *b, int x, int y)
 {
-    for (int k = 0; k < AROUND; k++)
-        if (inside(b, x + step[k][0], y + step[k][1]) && !has_surface(b, x + step[k][0], y + step[k][1])) return true;
+    for (int k = 0; k < BUILD_AROUND; k++)
+        if (inside(b, x + build_around[k][0], y + build_around[k][1]) &&
+            !has_surface(b, x + build_around[k][0], y + build_around[k][1]))
+            return true;
     return false;
 }
 
@@ -89,8 +89,8 @@ static uint8_t find_own(const build *b, int x, int y, double lacks)
     const vec3 p = gbuffer_position(b->g, x, y);
     const double per_unit = 1.0 / pixel_size(&b->g->camera, p.z);
     uint8_t own = 1;
-    for (int k = 0; k < AROUND; k++) {
-        const int u = x + step[k][0], v = y + step[k][1];
+    for (int k = 0; k < BUILD_AROUND; k++) {
+        const int u = x + build_around[k][0], v = y + build_around[k][1];
         if (!has_surface(b, u, v)) continue;
         const double off = fabs(v3_dot(made_normal(b, u, v), v3_sub(p, gbuffer_position(b->g, u, v)))) * per_unit;
         const double cost = per_offset * off + per_step * distance[k];
@@ -120,7 +120,7 @@ static bool find_row(void *context, size_t row, int worker)
 static vec3 own_normal(const mixing *m, int x, int y)
 {
     const int own = m->own[build_index(m->b, x, y)] - 2;
-    return own < 0 ? made_normal(m->b, x, y) : made_normal(m->b, x + step[own][0], y + step[own][1]);
+    return own < 0 ? made_normal(m->b, x, y) : made_normal(m->b, x + build_around[own][0], y + build_around[own][1]);
 }
 
 // The neighbour whose surface, mixed into the pixel's own, comes nearest to the mean.
@@ -130,8 +130,8 @@ static mixed_pixel mix(const mixing *m, int x, int y, vec3 own)
     vec3 mean;
     if (!mean_of(m->b, x, y, &mean)) return out;
     double least = v3_dot(v3_sub(own, mean), v3_sub(own, mean));
-    for (int k = 0; k < AROUND; k++) {
-        const int u = x + step[k][0], v = y + step[k][1];
+    for (int k = 0; k < BUILD_AROUND; k++) {
+        const int u = x + build_around[k][0], v = y + build_around[k][1];
         if (!has_surface(m->b, u, v)) continue;
         const vec3 turn = v3_sub(own_normal(m, u, v), own);
         const double square = v3_dot(turn, turn);
@@ -141,7 +141,7 @@ static mixed_pixel mix(const mixing *m, int x, int y, vec3 own)
         const double rest = v3_dot(off, off) + per_step_of_mix * share * distance[k];
         if (!(rest < least)) continue;
         least = rest;
-        out.x = (int8_t)step[k][0], out.y = (int8_t)step[k][1], out.share = (float)share;
+        out.x = (int8_t)build_around[k][0], out.y = (int8_t)build_around[k][1], out.share = (float)share;
     }
     return out;
 }
